@@ -21,7 +21,7 @@ inline bool valid(const Ray& ray) {
 inline void start_record(const RayRequest& request, RayRecord& record) {
   record.ray = request.ray;
   record.tag = request.tag;
-  record.tag.flags &= kRayWishes;
+  record.tag.flags &= kRequestFlags;
   record.hit = Hit{};
   record.hit.t = valid(request.ray) ? request.ray.tmax : -kInfinity;
 }
@@ -32,7 +32,7 @@ inline void finish_record(const RayRecord& record, HitBatch& out) {
   result.ray = record.ray;
   if (record.hit.valid()) result.hit = record.hit;
   result.tag = record.tag;
-  result.tag.flags &= kRayWishes;
+  result.tag.flags &= kRequestFlags;
 }
 
 }  // namespace carousel::accel

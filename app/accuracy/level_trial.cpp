@@ -90,7 +90,7 @@ std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<
   return out;
 }
 
-std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& lifted,
+std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& relaxed,
                                                   const accel::Accel& accel, float scene_size,
                                                   const std::vector<RayBatch>& pictures) {
   report::ModelledCost cost;
@@ -106,7 +106,7 @@ std::optional<report::ModelledCost> modelled_cost(const Config& machine, const C
     busy += unit_use(*configured->cycle).busy;
     cost.by_seed.push_back(report::ratio(configured->cycle->cycles, picture.size()));
     for (const ringbus::ResourceStatistics& resource : configured->resources) tests += resource.tests;
-    const std::optional<ringbus::RunResult> free = simulate(lifted, accel, scene_size, picture);
+    const std::optional<ringbus::RunResult> free = simulate(relaxed, accel, scene_size, picture);
     if (!free) continue;
     const UnitUse use = unit_use(*free->cycle);
     limited_cycles += free->cycle->cycles;

@@ -40,9 +40,9 @@ class LevelledAccel {
 std::vector<report::Spread> time_levels(LevelledAccel& accel, const std::vector<AccuracyConfig>& levels,
                                         const RayBatch& rays, int repetitions, const std::function<bool()>& stopped);
 
-/// Simulates `machine` and the machine `lifted` from it (ringbus/verdict/what_if.h, tester_limited()) at the levels of
+/// Simulates `machine` and the machine `relaxed` from it (ringbus/verdict/what_if.h, tester_limited()) at the levels of
 /// `accel`, on each of some pictures' rays. Empty if the cycle engine does not support the configured machine.
-std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& lifted,
+std::optional<report::ModelledCost> modelled_cost(const Config& machine, const Config& relaxed,
                                                   const accel::Accel& accel, float scene_size,
                                                   const std::vector<RayBatch>& pictures);
 

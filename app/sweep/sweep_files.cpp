@@ -1,6 +1,7 @@
 #include "app/sweep/sweep_files.h"
 
 #include "app/host/program_info.h"
+#include "report/schema/document_version.h"
 
 namespace carousel::app {
 
@@ -65,7 +66,7 @@ Json row_json(const SweepRows& rows, const SweepRow& row) {
 
 Json sweep_json(const SweepRows& rows, const std::vector<Goal>& goals, const std::string& config) {
   const report::Program program = program_info();
-  Json out{{"schema_version", 1},
+  Json out{{"schema_version", report::kDocumentVersion},
            {"carousel", {{"version", program.version}, {"commit", program.commit}}},
            {"config", config},
            {"keys", rows.keys}};

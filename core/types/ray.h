@@ -36,7 +36,7 @@ enum RayFlag : std::uint8_t {
   kRayAll = 64,         ///< no hit ends its way: each is reported (core/types/hit_sink.h), and the ray misses
   kRayClosest = 32,     ///< a shadow ray that wants to know the first thing in its way, since light may pass that
 };
-inline constexpr std::uint8_t kRayWishes =
+inline constexpr std::uint8_t kRequestFlags =
     kRayCullBack | kRayCullFront | kRayForceOpaque | kRayAlone | kRayClosest | kRayAll;
 
 /// Which ray of the frame this is. `path` indexes the path state of the workload that emitted the ray; with

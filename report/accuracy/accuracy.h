@@ -57,7 +57,7 @@ struct HardCase {
       false;  ///< its triangles are so thin that a rounded test may lose them, though their mesh stays closed
 };
 
-/// The configured machine with all but its test units lifted.
+/// The configured machine with all but its test units relaxed.
 struct TesterLimited {
   double cycles_per_ray = 0;
   std::string busiest;            ///< the kind of units that was busy most

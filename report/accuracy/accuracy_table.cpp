@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "report/schema/document_version.h"
 #include "report/text/number_text.h"
 
 namespace carousel::report {
@@ -84,7 +85,7 @@ void level_lines(const Accuracy& a, std::string& out) {
       "* on the frontier of the host's time, + of the testers' cycles: nothing is both cheaper and less often wrong;\n"
       "costs that pairs (of one repetition, of one seed of the picture) do not tell apart are equal. over least: the\n"
       "interval (95 %) of the testers' cycles over the least. ns/ray: CPU time of one thread, depth first, single\n"
-      "rays. testers: cycles a ray of the configured machine with all but its test units lifted; machine: as it is\n"
+      "rays. testers: cycles a ray of the configured machine with all but its test units relaxed; machine: as it is\n"
       "configured. area: box, triangle and transform units of a resource over those of the default levels; pJ/ray: "
       "energy\n"
       "of the tests' products and sums (45 nm). missed, extra, other: rays of the scene that miss where exact "
@@ -194,9 +195,15 @@ std::string accuracy_table(const Accuracy& a) {
 }
 
 nlohmann::ordered_json accuracy_json(const Accuracy& a) {
-  nlohmann::ordered_json j{{"schema_version", 1},      {"incomplete", a.incomplete},   {"scene", a.scene},
-                           {"triangles", a.triangles}, {"instances", a.instances},     {"rays", a.rays},
-                           {"seed", a.seed},           {"repetitions", a.repetitions}, {"seeds", a.seeds}};
+  nlohmann::ordered_json j{{"schema_version", kDocumentVersion},
+                           {"incomplete", a.incomplete},
+                           {"scene", a.scene},
+                           {"triangles", a.triangles},
+                           {"instances", a.instances},
+                           {"rays", a.rays},
+                           {"seed", a.seed},
+                           {"repetitions", a.repetitions},
+                           {"seeds", a.seeds}};
   j["picture"] = {{"width", a.width}, {"height", a.height}, {"samples", a.samples}};
   j["levels"] = nlohmann::ordered_json::array();
   for (const AccuracyRow& row : a.rows) j["levels"].push_back(row_json(row, a.hard));

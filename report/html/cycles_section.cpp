@@ -68,7 +68,7 @@ void add_units(Table& table, const Json& resources, double cycles) {
       if (found == kinds.end()) found = kinds.insert(kinds.end(), {kind, Shares{}});
       for (std::size_t u = 0; u < kUseCount; ++u) found->second[u] += one[u];
     }
-    dispatch += number_at(resource, "units.handler_busy") / (cycles * static_cast<double>(resources.size()));
+    dispatch += number_at(resource, "units.dispatch_busy") / (cycles * static_cast<double>(resources.size()));
   }
   for (const auto& [kind, shares] : kinds)
     if (shares[0] > 0) add(table, words(kind) + (kind == "ray_reads" ? "" : " units"), shares);

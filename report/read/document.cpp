@@ -15,6 +15,7 @@
 #include "report/read/schema_check.h"
 #include "report/read/strict_json.h"
 #include "report/run/report_json.h"
+#include "report/schema/document_version.h"
 
 namespace carousel::report {
 
@@ -75,8 +76,9 @@ std::string digest_of(Json json) {
 
 void require_version(const Json& json) {
   const auto version = json.find("schema_version");
-  if (version != json.end() && version->is_number_integer() && *version != 1)
-    throw JsonFault("schema_version", "this program reads version 1, found " + version->dump());
+  if (version != json.end() && version->is_number_integer() && *version != kDocumentVersion)
+    throw JsonFault("schema_version",
+                    fmt::format("this program reads version {}, found {}", kDocumentVersion, version->dump()));
 }
 
 /// A fault of a report that stands in another document has a longer path.

@@ -17,7 +17,7 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (named == nullptr) {
     const BottleneckGain& best = b.gains.front();
     const std::string others = best.together > 1 ? fmt::format(" with {} others", best.together - 1) : "";
-    return fmt::format("no class of parts limits it alone: the best lift, {}{}, gains {}{}", best.action, others,
+    return fmt::format("no class of parts limits it alone: the best relaxation, {}{}, gains {}{}", best.action, others,
                        gain_text(best), best.low <= 0 && best.gain > 0 ? ", which may be noise" : "");
   }
   std::string text = fmt::format("{}: {} gains {}", named->name, named->action, gain_text(*named));

@@ -4,6 +4,7 @@
 
 #include "core/statistics/raster_counts.h"
 #include "report/schema/checksum.h"
+#include "report/schema/document_version.h"
 #include "report/sections/bottleneck.h"
 #include "report/sections/bytes.h"
 #include "report/sections/costs.h"
@@ -37,7 +38,7 @@ namespace carousel::report {
 /// fields, units and meanings stand in its file. Counts that depend on scheduling differ from run to run in the native
 /// engine with several threads.
 struct Report {
-  std::int64_t schema_version = 1;
+  std::int64_t schema_version = kDocumentVersion;
   bool incomplete = false;
   Program carousel;
   nlohmann::ordered_json config = nlohmann::ordered_json::object();

@@ -97,7 +97,7 @@ void cycle_words(Words& w) {
   for (const UnitKindRow& row : kUnitKinds)
     w.item(std::string(row.name) + " N", std::string("resources[].units.") + row.name + ".busy",
            "part of the cycles of all resources in which these units worked");
-  w.item("dispatch N", "resources[].units.handler_busy",
+  w.item("dispatch N", "resources[].units.dispatch_busy",
          "part of the cycles of all resources in which the dispatch stage looked through ray IDs")
       .item("shading N", "shading.utilisation")
       .item("DRAM N", "memory.dram_utilisation");

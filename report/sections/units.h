@@ -53,17 +53,11 @@ void describe(V& v, const Units& r) {
     else
       v.section_if(r.features.show(row.shown), row.name, r.kinds[row.kind], row.meaning);
   };
-  // The order of these keys is older than the table of the kinds.
-  for (const UnitKindRow& row : kUnitKinds) {
-    if (row.kind != UnitKind::kTransform) kind(row);
-    if (row.kind != UnitKind::kBundle) continue;
-    v.section(
-        "ray_reads", r.ray_reads,
-        "the port of the ray store, with rays.reads_per_cycle; with rays.banks that of its banks to the box units");
-    v.section("primitive_ray_reads", r.primitive_ray_reads,
-              "with rays.banks, the port of the banks to the units for primitives");
-  }
-  kind(unit_row(UnitKind::kTransform));
+  for (const UnitKindRow& row : kUnitKinds) kind(row);
+  v.section("ray_reads", r.ray_reads,
+            "the port of the ray store, with rays.reads_per_cycle; with rays.banks that of its banks to the box units");
+  v.section("primitive_ray_reads", r.primitive_ray_reads,
+            "with rays.banks, the port of the banks to the units for primitives");
   v.field("bank_conflicts", r.bank_conflicts, "cycles",
           "reading took longer than with the records evenly over the banks, with rays.banks; of both ports");
   v.field("second_reads", r.second_reads, "records",
@@ -73,8 +67,8 @@ void describe(V& v, const Units& r) {
       "the testers behind a distributor, with topology.form: distributor; the cycles of units are the mean of the "
       "testers");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
-  v.field("handler_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
-  v.field("handler_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");
+  v.field("dispatch_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
+  v.field("dispatch_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");
 }
 
 }  // namespace carousel::report

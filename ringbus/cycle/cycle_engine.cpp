@@ -200,7 +200,7 @@ class CycleRun {
     std::vector<ClassUse> out;
     for (const auto [kind, busy] : units) out.push_back({unit_row(kind).work, tiles, busy});
     out.push_back({"ray_reads", config_.rays.banks > 0 ? 2 * tiles : tiles, reads});
-    out.push_back({"handling", tiles, dispatch});
+    out.push_back({"dispatch", tiles, dispatch});
     out.push_back(link_use());
     Cycle port = 0;
     for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;

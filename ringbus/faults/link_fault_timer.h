@@ -67,7 +67,7 @@ class LinkFaultTimer {
       if (repeat_at_ == kNever) repeat_at_ = at + round_trip();
       return 0;
     }
-    return hear(overdue_.size()) + 1;
+    return learn(overdue_.size()) + 1;
   }
   /// The places that late acknowledgements and repeated frames have brought back.
   struct Recovered {
@@ -80,7 +80,7 @@ class LinkFaultTimer {
       const auto first = std::min_element(overdue_.begin(), overdue_.end());
       if (std::min(*first, repeat_at_) > now) break;
       if (*first <= repeat_at_)
-        out.places += hear(static_cast<std::size_t>(first - overdue_.begin()) + 1);
+        out.places += learn(static_cast<std::size_t>(first - overdue_.begin()) + 1);
       else
         out.busy += repeat();
     }
@@ -96,7 +96,7 @@ class LinkFaultTimer {
  private:
   /// The time after which an answer would be there.
   Cycle round_trip() const { return 2 * latency_ + cycles_; }
-  std::uint32_t hear(std::size_t count) {
+  std::uint32_t learn(std::size_t count) {
     overdue_.erase(overdue_.begin(), overdue_.begin() + static_cast<std::ptrdiff_t>(count));
     if (overdue_.empty()) repeat_at_ = kNever;
     return static_cast<std::uint32_t>(count);

@@ -254,7 +254,7 @@ class NativeRun {
     Clock::time_point last_change = Clock::now();
     std::unique_lock lock(mutex_);
     const std::chrono::milliseconds interval(ledger_ ? 10 : 100);
-    const auto pause = series_.on() ? std::min(interval, NativeSeries::kLook) : interval;
+    const auto pause = series_.on() ? std::min(interval, NativeSeries::kPollInterval) : interval;
     Clock::time_point next_check = Clock::now() + interval;
     while (!schedule_wait(ended_changed_, lock, pause, [this] { return ended_ == threads_; })) {
       look();

@@ -23,7 +23,7 @@ NativeSeries::NativeSeries(std::size_t wanted, const Config& config)
       carried_(resources_) {
   const std::size_t counters = kFirstResource + kPerResource * resources_;
   samples_ = CounterSamples(most_samples(wanted, counters + 2), counters,
-                            std::chrono::duration_cast<std::chrono::microseconds>(kLook).count());
+                            std::chrono::duration_cast<std::chrono::microseconds>(kPollInterval).count());
   last_.resize(counters);
   levels_.resize(counters);
 }

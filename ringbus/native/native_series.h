@@ -19,7 +19,7 @@ namespace carousel::ringbus {
 class NativeSeries {
  public:
   /// How often the watcher looks.
-  static constexpr std::chrono::milliseconds kLook{10};
+  static constexpr std::chrono::milliseconds kPollInterval{10};
 
   /// `wanted`: most samples; 0: nothing is kept.
   NativeSeries(std::size_t wanted, const Config& config);

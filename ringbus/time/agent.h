@@ -22,7 +22,7 @@ class Agent {
   virtual Cycle unannounced() const { return next(); }
   /// Something will arrive at `at` on a channel that was connected by WakeupTable::connect_beside(). Called between
   /// windows, before run().
-  virtual void hear(Cycle at) { static_cast<void>(at); }
+  virtual void notify(Cycle at) { static_cast<void>(at); }
   /// Does everything there is to do before `end`, in the order of time.
   virtual void run(Cycle end) = 0;
   /// The answer of next() as run() has left it. Messages that have arrived since then are announced. An agent that is

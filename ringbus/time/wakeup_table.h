@@ -16,7 +16,7 @@ namespace carousel::ringbus {
 /// use it at the same time.
 ///
 /// An agent with many channels may have some of them connected beside the others: it hears of their arrivals apart
-/// (Agent::hear), and need not look into them while it has heard nothing.
+/// (Agent::notify), and need not look into them while it has heard nothing.
 class WakeupTable {
  public:
   /// Agents by thread, as run_windows() gets them.
@@ -35,7 +35,7 @@ class WakeupTable {
     const Place place = places_.at(&to);
     channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
   }
-  /// As connect(), for a channel of which `to` is told by Agent::hear().
+  /// As connect(), for a channel of which `to` is told by Agent::notify().
   template <class T, bool Returns>
   void connect_beside(Channel<T, Returns>& channel, const Agent& from, const Agent& to) {
     const Place place = places_.at(&to);

@@ -186,8 +186,9 @@ class WindowRun {
     const std::vector<Agent*>& agents = parts_[thread];
     std::vector<Cycle>& wake = schedule.wake;
     for (std::size_t from = 0; from < parts_.size(); ++from) {
-      hear(wakeups_.row(thread, from), wake, [](std::size_t, Cycle) {});
-      hear(wakeups_.row_beside(thread, from), wake, [&](std::size_t i, Cycle at) { agents[i]->hear(at); });
+      take_announcements(wakeups_.row(thread, from), wake, [](std::size_t, Cycle) {});
+      take_announcements(wakeups_.row_beside(thread, from), wake,
+                         [&](std::size_t i, Cycle at) { agents[i]->notify(at); });
     }
     Cycle first = kNever;
     for (std::size_t i = 0; i < wake.size(); ++i) {
@@ -198,7 +199,7 @@ class WindowRun {
   }
   /// `row` may be empty: nothing is announced there.
   template <class Tell>
-  static void hear(std::vector<Cycle>& row, std::vector<Cycle>& wake, const Tell& tell) {
+  static void take_announcements(std::vector<Cycle>& row, std::vector<Cycle>& wake, const Tell& tell) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (row[i] == kNever) continue;
       tell(i, row[i]);

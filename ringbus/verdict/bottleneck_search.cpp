@@ -31,8 +31,8 @@ class Search {
     // The bottleneck is that of the whole machine, before a resource stops.
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
-    lifts_ = what_ifs(config_, accel_);
-    out_.gains.resize(lifts_.size());
+    what_ifs_ = what_ifs(config_, accel_);
+    out_.gains.resize(what_ifs_.size());
   }
 
   Bottleneck search() {
@@ -54,7 +54,7 @@ class Search {
     for (int doubled = 0; out_.complete; ++doubled) {
       const bool alike = judge();
       if (alike) {
-        lift_contenders(worth);
+        relax_contenders(worth);
         worth = perhaps_noise();
         if (worth.empty()) break;
       }
@@ -85,7 +85,7 @@ class Search {
     return out_;
   }
 
-  void begin(const char* stage, std::size_t lifts) { pilots_.begin(stage, lifts + 1, out_.paths); }
+  void begin(const char* stage, std::size_t relaxed) { pilots_.begin(stage, relaxed + 1, out_.paths); }
 
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
     std::vector<RunResult> results = pilots_.simulate(machines);
@@ -134,8 +134,8 @@ class Search {
   std::vector<std::vector<std::size_t>> grouped() const {
     std::vector<std::vector<std::size_t>> out;
     std::vector<std::size_t> of_idle;
-    for (std::size_t i = 0; i < lifts_.size(); ++i) {
-      if (idle(lifts_[i].name))
+    for (std::size_t i = 0; i < what_ifs_.size(); ++i) {
+      if (idle(what_ifs_[i].name))
         of_idle.push_back(i);
       else
         out.push_back({i});
@@ -154,9 +154,10 @@ class Search {
       std::vector<const Config*> machines;
       if (!have_base) machines.push_back(&config_);
       for (std::vector<std::size_t>& group : groups) {
-        std::vector<const WhatIf*> lifts;
-        for (const std::size_t i : group) lifts.push_back(&lifts_[i]);
-        std::optional<Config> machine = group.size() == 1 ? lifts.front()->relaxed : relaxed_together(config_, lifts);
+        std::vector<const WhatIf*> members;
+        for (const std::size_t i : group) members.push_back(&what_ifs_[i]);
+        std::optional<Config> machine =
+            group.size() == 1 ? members.front()->relaxed : relaxed_together(config_, members);
         if (!machine) {
           halve(group, parts);
           continue;
@@ -173,7 +174,7 @@ class Search {
       }
       for (std::size_t k = 0; k < tried.size(); ++k) {
         const bool warms =
-            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return lifts_[i].keeps_shapes; });
+            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return what_ifs_[i].keeps_shapes; });
         const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0, warms);
         if (tried[k].size() == 1) relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
         // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
@@ -195,14 +196,14 @@ class Search {
 
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
-    out_.gains[i] = {lifts_[i].name, lifts_[i].action, lifts_[i].sets, rate * (1 + gain.value),
-                     gain.value,     gain.low,         gain.high,      together};
+    out_.gains[i] = {what_ifs_[i].name, what_ifs_[i].action, what_ifs_[i].sets, rate * (1 + gain.value), gain.value,
+                     gain.low,          gain.high,           together};
   }
 
   /// Relaxes each of these classes with the present pilot.
-  void lift(const std::vector<std::size_t>& which) {
+  void relax(const std::vector<std::size_t>& which) {
     std::vector<const Config*> machines;
-    for (const std::size_t i : which) machines.push_back(&lifts_[i].relaxed);
+    for (const std::size_t i : which) machines.push_back(&what_ifs_[i].relaxed);
     std::vector<RunResult> results = simulate(machines);
     if (!out_.complete) return;
     for (std::size_t k = 0; k < which.size(); ++k) relaxed_[which[k]] = {std::move(results[k]), out_.paths};
@@ -213,13 +214,13 @@ class Search {
   void estimate(const std::vector<std::size_t>& classes) {
     for (const std::size_t i : classes) {
       const RunResult& result = relaxed_[i].result;
-      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), lifts_[i].keeps_shapes), 1);
+      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), what_ifs_[i].keeps_shapes), 1);
     }
   }
 
   /// Relaxes those of these classes that may be the best: of many, the two that promise most, and then those that may
   /// still gain more. One that gains less than another surely does is left out, and keeps the gain of an earlier pilot.
-  void lift_contenders(const std::vector<std::size_t>& classes) {
+  void relax_contenders(const std::vector<std::size_t>& classes) {
     constexpr std::size_t kMany = 4, kFirst = 2;
     for (bool first = true;; first = false) {
       double surely = 0;
@@ -229,7 +230,7 @@ class Search {
         if (relaxed_[i].paths != out_.paths && out_.gains[i].high >= surely) missing.push_back(i);
       if (first && missing.size() >= kMany) missing.resize(kFirst);
       if (missing.empty()) break;
-      lift(missing);
+      relax(missing);
       if (!out_.complete) return;
     }
     for (const std::size_t i : classes)
@@ -307,8 +308,8 @@ class Search {
   const SearchedRun& run_;
   PilotRuns pilots_;
   bool stops_ = false;
-  std::vector<WhatIf> lifts_;
-  std::map<std::size_t, Relaxed> relaxed_;  // by index of lifts_
+  std::vector<WhatIf> what_ifs_;
+  std::map<std::size_t, Relaxed> relaxed_;  // by index of what_ifs_
   RunResult base_;
   Bottleneck out_;
 };

@@ -38,10 +38,10 @@ struct PartClass {
   const char *name, *action;
   bool (*present)(const Config&);  ///< a machine whose keys say so; whether it feels them is core/config's to say
   void (*relax)(Config&);
-  int lifts = 6;              ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
+  int times = 6;              ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
   bool keeps_shapes = false;  // as WhatIf's
 };
-constexpr int kStorageLifts = 2;  // the host has to store it too
+constexpr int kStorageTimes = 2;  // the host has to store it too
 constexpr PartClass kPartClasses[] = {
     {"test_latency", "half testers.*.latency_cycles", every_machine,
      [](Config& c) {
@@ -73,11 +73,11 @@ constexpr PartClass kPartClasses[] = {
     {"bundle_builder", "twice bundles.builder.rays_per_cycle", every_machine,
      [](Config& c) { c.bundles.builder.rays_per_cycle *= 2; }},
     {"bundles_open", "twice bundles.builder.open", every_machine, [](Config& c) { c.bundles.builder.open *= 2; }},
-    {"handling", "twice packets.ids_per_cycle", every_machine, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
+    {"dispatch", "twice packets.ids_per_cycle", every_machine, [](Config& c) { c.packets.ids_per_cycle *= 2; }},
     {"sorting", "twice collections.sort_ids_per_cycle", every_machine,
      [](Config& c) { c.collections.sort_ids_per_cycle *= 2; }},
     {"collection_storage", "twice collections.capacity", every_machine, [](Config& c) { c.collections.capacity *= 2; },
-     kStorageLifts},
+     kStorageTimes},
     {"issue_rule", "collections.partial: ahead", every_machine,
      [](Config& c) { c.collections.partial = Partial::kAhead; }, 0},
     {"issue_rule", "collections.partial: idle",
@@ -103,7 +103,7 @@ constexpr PartClass kPartClasses[] = {
     {"memory_bandwidth", "twice memory.dram.channels", every_machine, [](Config& c) { c.memory.dram.channels *= 2; }},
     {"dram_queue", "twice memory.dram.queue", every_machine, [](Config& c) { c.memory.dram.queue *= 2; }},
     {"ray_slots", "twice rays.slots_per_resource", every_machine, [](Config& c) { c.rays.slots_per_resource *= 2; },
-     kStorageLifts},
+     kStorageTimes},
     {"shading", "twice shading.workers", every_machine, [](Config& c) { c.shading.workers = 2 * shader_workers(c); }},
     {"shading_lanes", "twice shading.lanes", [](const Config& c) { return c.shading.lanes > 1; },
      [](Config& c) { c.shading.lanes *= 2; }},
@@ -138,7 +138,7 @@ std::vector<std::string> felt_differences(const Config& config, const SceneFacts
   return sets;
 }
 
-/// Reads the configuration as a user's who tries the lift. Returns whether it may be run.
+/// Reads the configuration as a user's who tries the what-if. Returns whether it may be run.
 bool may_be_set(const std::string& resolved, const std::vector<std::string>& sets) {
   try {
     load_config({resolved, "what-if.yaml"}, sets, {.force = true});
@@ -154,7 +154,7 @@ Config tester_limited(const Config& config) {
   Config machine = config;
   const bool valid = may_be_set(resolved_yaml(config), {});
   for (const PartClass& part : kPartClasses) {
-    for (int i = 0; i < part.lifts && part.present(machine); ++i) {
+    for (int i = 0; i < part.times && part.present(machine); ++i) {
       Config next = machine;
       part.relax(next);
       const std::vector<std::string> sets = felt_differences(machine, {}, next);
@@ -169,7 +169,7 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   std::vector<WhatIf> all;
   const std::string resolved = resolved_yaml(config);
   const SceneFacts scene = scene_facts(accel);
-  const bool valid = may_be_set(resolved, {});  // a test's machine may lack keys that the lifts do not touch
+  const bool valid = may_be_set(resolved, {});  // a test's machine may lack keys that what-ifs do not touch
   const auto add = [&](const char* name, std::string action, const auto& relax, bool keeps_shapes = false) {
     WhatIf what_if{name, std::move(action), {}, relax, config, keeps_shapes};
     relax(what_if.relaxed);
@@ -186,9 +186,9 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
   return all;
 }
 
-std::optional<Config> relaxed_together(const Config& config, const std::vector<const WhatIf*>& lifts) {
+std::optional<Config> relaxed_together(const Config& config, const std::vector<const WhatIf*>& members) {
   Config relaxed = config;
-  for (const WhatIf* lift : lifts) lift->relax(relaxed);
+  for (const WhatIf* member : members) member->relax(relaxed);
   const std::string resolved = resolved_yaml(config);
   if (may_be_set(resolved, {}) && !may_be_set(resolved, config_differences(config, relaxed))) return std::nullopt;
   return relaxed;

@@ -25,9 +25,9 @@ struct WhatIf {
 std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel);
 
 /// The machine with all of these classes relaxed; absent if no configuration may say so.
-std::optional<Config> relaxed_together(const Config& config, const std::vector<const WhatIf*>& lifts);
+std::optional<Config> relaxed_together(const Config& config, const std::vector<const WhatIf*>& members);
 
-/// The configured machine with every class of parts but its test units lifted, by the same table: doubled, or its
+/// The configured machine with every class of parts but its test units relaxed, by the same table: doubled, or its
 /// latency halved, six times (storage less often), as far as the keys' ranges allow. Topology and order of issue stay.
 Config tester_limited(const Config& config);
 

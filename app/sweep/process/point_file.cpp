@@ -5,6 +5,7 @@
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "report/read/document.h"
+#include "report/schema/document_version.h"
 
 namespace carousel::app {
 
@@ -27,7 +28,8 @@ Json keys_json(const Choice& keys) {
 
 void write_point(const std::filesystem::path& out, const SweepPoint& point, double seconds,
                  const std::optional<PointError>& error, const Json& report) {
-  Json json{{"schema_version", 1}, {"point", point.digest}, {"status", error ? "failed" : "done"}};
+  Json json{
+      {"schema_version", report::kDocumentVersion}, {"point", point.digest}, {"status", error ? "failed" : "done"}};
   json["keys"] = keys_json(point.keys);
   json["sets"] = point.sets;
   if (error) json["error"] = {{"kind", error->kind}, {"text", error->text}};

@@ -85,7 +85,7 @@ class Host {
     for (const Child& child : children_) fds.push_back({child.pipe, POLLIN, 0});
     if (poll(fds.data(), fds.size(), -1) < 0) return;
     for (std::size_t i = children_.size(); i-- > 0;)
-      if (fds[i + 1].revents != 0) hear(i);
+      if (fds[i + 1].revents != 0) on_worker(i);
     if (fds[0].revents == 0) return;
     const std::string message = receive_message(socket_);
     if (message.empty()) _exit(0);  // the children end with their parent
@@ -130,7 +130,7 @@ class Host {
   }
 
   /// Reads what a child says, and tells its end to the coordinator.
-  void hear(std::size_t index) {
+  void on_worker(std::size_t index) {
     Child& child = children_[index];
     char buffer[4096];
     const ssize_t count = read(child.pipe, buffer, sizeof buffer);

@@ -109,7 +109,7 @@ std::vector<WorkerPool::Finished> WorkerPool::wait(int timeout_ms, int also) {
   std::vector<Finished> out;
   if (poll(fds.data(), fds.size(), timeout_ms) <= 0) return out;
   for (std::size_t i = hosts_.size(); i-- > 0;)
-    if (fds[i].revents != 0) hear(i, out);
+    if (fds[i].revents != 0) on_worker(i, out);
   return out;
 }
 
@@ -119,7 +119,7 @@ WorkerPool::Finished WorkerPool::finish(std::uint64_t id, double seconds, std::o
   return out;
 }
 
-void WorkerPool::hear(std::size_t index, std::vector<Finished>& out) {
+void WorkerPool::on_worker(std::size_t index, std::vector<Finished>& out) {
   Host& host = hosts_[index];
   const std::string text = receive_message(host.process.socket);
   if (text.empty()) return host_ended(index, out);

@@ -56,7 +56,7 @@ class WorkerPool {
   void end_host(std::size_t index);
   void end_idle_hosts();
   std::vector<Finished> wait(int timeout_ms, int also);
-  void hear(std::size_t index, std::vector<Finished>& out);
+  void on_worker(std::size_t index, std::vector<Finished>& out);
   void host_ended(std::size_t index, std::vector<Finished>& out);
   Finished finish(std::uint64_t id, double seconds, std::optional<PointError> error);
   std::size_t slots(const SweepPoint& point) const;

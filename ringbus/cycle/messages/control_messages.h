@@ -15,7 +15,7 @@ struct NewRays {
   enum class Order : std::uint8_t {
     kTake,     ///< take the rays
     kDiscard,  ///< discard all work and every packet that comes back, and note when that is done
-    kGoOn,     ///< go on without the resource that has stopped
+    kResume,   ///< go on without the resource that has stopped
   } order = Order::kTake;
   std::uint64_t records = 0;            ///< loaded for them into ray stores, those of bundles included
   RayBatch rays{};                      ///< instead of IDs: rays that travel to find slots

@@ -39,7 +39,7 @@ void TravellingRays::note_taken(RayId id, Cycle now) {
   placed_at_[machine_.stores[here_.value]->slot(id)] = now;
 }
 
-void TravellingRays::come_home(Packet& packet, Cycle now) {
+void TravellingRays::retire_at_owner(Packet& packet, Cycle now) {
   const Cycle loaded = take_slots(packet, now);
   RayGroup group = rounds_.unload(packet);
   packet.members.clear();

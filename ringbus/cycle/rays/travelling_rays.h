@@ -38,7 +38,7 @@ class TravellingRays {
   Cycle take_slots(Packet& packet, Cycle now);
   /// The packet is back, or need not go out: the last slots, then the IDs are kept until the records are there. Rays
   /// without a slot wait again. The packet is empty afterwards.
-  void come_home(Packet& packet, Cycle now);
+  void retire_at_owner(Packet& packet, Cycle now);
   /// Moves IDs whose records have been loaded to `admission`. Returns whether there were any.
   bool admit(Cycle now, Admission& admission);
   /// The time at which the next IDs can be admitted.

@@ -159,7 +159,7 @@ void ShadingAgent::restart(Cycle now) {
   placement_.slots().clear(now);
   machine_.control.exclude(ResourceId(loss_.stopped()));
   open_.remove_slots(machine_.stores.front()->slots());
-  placement_.order_all(NewRays::Order::kGoOn, now);
+  placement_.order_all(NewRays::Order::kResume, now);
   if (const RayBatch rays = loss_.restart(now); !rays.empty()) placement_.place_again(rays, now);
 }
 

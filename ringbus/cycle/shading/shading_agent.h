@@ -47,7 +47,7 @@ class ShadingAgent final : public Agent {
 
   Cycle next() const override;
   bool polled() const override { return false; }
-  void hear(Cycle at) override { arrivals_.announce(at); }
+  void notify(Cycle at) override { arrivals_.announce(at); }
   void run(Cycle end) override;
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;

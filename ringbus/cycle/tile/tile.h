@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "ringbus/cycle/tile/records/tile_samples.h"
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/stages/dispatcher.h"
 #include "ringbus/cycle/tile/stages/fail_stop.h"
-#include "ringbus/cycle/tile/records/tile_samples.h"
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/packets/statistics_sink.h"
 
@@ -41,7 +41,7 @@ class Tile final : public ResourceAgent {
   }
   bool polled() const override { return egress_.awaits_credit(); }  // no wakeup tells of credits
   Cycle unannounced() const override { return egress_.next_after(now_); }
-  void hear(Cycle at) override { due_.side = std::min(due_.side, at); }
+  void notify(Cycle at) override { due_.side = std::min(due_.side, at); }
   void run(Cycle end) override;
   Cycle next_after_run() const override { return due_.next; }
   std::string describe() const override;

@@ -37,7 +37,7 @@ void BundledTraversal::discard() {
 void BundledTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outcome) {
   counts_ = BundleCounts{};
   find_bundles(local);
-  if (go_on(packet)) {
+  if (stay_bundled(packet)) {
     test_bundles(packet, local, outcome);
   } else if (tests_leaf(packet)) {
     test_leaf(packet, local, outcome);
@@ -66,7 +66,7 @@ void BundledTraversal::find_bundles(LocalRays& local) {
 }
 
 /// True if bundles are tested as such at the packet's node.
-bool BundledTraversal::go_on(const Packet& packet) const {
+bool BundledTraversal::stay_bundled(const Packet& packet) const {
   const accel::NodeKey key = packet.key;
   if (!key.ref.is_inner() || is_treelet(key) || split_.at_node(key, packet.depth)) return false;
   // A bundle that waits for more tests than its record can count goes on as rays.

@@ -45,7 +45,7 @@ class BundledTraversal final : public TraversalMethod {
   };
 
   void find_bundles(LocalRays& local);
-  bool go_on(const Packet& packet) const;
+  bool stay_bundled(const Packet& packet) const;
 
   // Where bundles are taken apart: each of their rays is tested as a single one.
   void take_apart(Packet& packet, LocalRays& local, TestOutcome& outcome);

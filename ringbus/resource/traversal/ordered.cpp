@@ -42,14 +42,14 @@ void OrderedTraversal::test_at(const NextNode& node, const LocalRays& local, Pac
     const RayRecord& ray = context_.store.record(slot);
     const bool done = (ray.tag.flags & kRayDone) != 0;
     const NextNode next = done ? NextNode{} : stacks_.pop(slot, ray.hit.t);
-    packet.next[local.members[i]] = go_on(slot, next);
+    packet.next[local.members[i]] = advance(slot, next);
     if (next.any) continue;
     stacks_.clear(slot);
     context_.completion.add_pending(slot, -1);
   }
 }
 
-NextNode OrderedTraversal::go_on(std::uint32_t slot, NextNode next) {
+NextNode OrderedTraversal::advance(std::uint32_t slot, NextNode next) {
   if (context_.blocks == nullptr) return next;
   at_[slot] = next.any ? next : root();
   if (next.any) next.key = context_.blocks->name(next.key);

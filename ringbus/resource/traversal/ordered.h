@@ -39,7 +39,7 @@ class OrderedTraversal final : public TraversalMethod {
   void test_at(const NextNode& node, const LocalRays& local, Packet& packet, TestOutcome& outcome);
   void test_each_at_its_own(Packet& packet, const LocalRays& local, TestOutcome& outcome);
   /// The ray in `slot` goes on to `next`; what its packet says of that.
-  NextNode go_on(std::uint32_t slot, NextNode next);
+  NextNode advance(std::uint32_t slot, NextNode next);
 
   const VisitContext context_;
   ChildOrder order_;

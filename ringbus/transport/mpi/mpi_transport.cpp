@@ -22,7 +22,7 @@ using Clock = std::chrono::steady_clock;
 
 // Words of a sum that travel in one message.
 constexpr std::size_t kSumWords = std::size_t{1} << 17;
-constexpr std::chrono::milliseconds kLook{50}, kSign{200};
+constexpr std::chrono::milliseconds kPollInterval{50}, kSign{200};
 // A thread that looked so late has not run meanwhile, and cannot blame others.
 constexpr std::chrono::milliseconds kLate{1000};
 // A rank that has not waited for others for so long is busy with its own, and ends without being asked; all have said
@@ -136,7 +136,7 @@ class OpenMpi final : public MpiTransport {
 
   /// Gives and takes signs of life, when it is time.
   void tend(Clock::time_point now) {
-    if (now - tended_ < kLook) return;
+    if (now - tended_ < kPollInterval) return;
     if (now - tended_ > kLate)
       for (Peer& peer : peers_) peer.heard = now;
     tended_ = now;
@@ -214,7 +214,7 @@ class OpenMpi final : public MpiTransport {
 
   /// Gives signs of life while the other threads are busy with something else.
   void watch(const std::stop_token& ended) {
-    for (; !ended.stop_requested(); std::this_thread::sleep_for(kLook)) {
+    for (; !ended.stop_requested(); std::this_thread::sleep_for(kPollInterval)) {
       {
         const std::unique_lock lock(mutex_, std::try_to_lock);
         if (!lock) continue;  // the thread that holds the lock tends the others

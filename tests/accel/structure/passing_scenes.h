@@ -72,7 +72,7 @@ inline scene::Scene passing_scene(BuiltinScene builtin, std::uint32_t balls, std
 inline RayBatch wishing_rays(const scene::Scene& scene, std::size_t count, std::uint64_t seed) {
   RayBatch rays = mixed_rays(scene, count, seed);
   for (std::size_t i = 0; i < rays.size(); ++i)
-    rays[i].tag.flags = static_cast<std::uint8_t>((i * 2654435761u >> 20) & kRayWishes);
+    rays[i].tag.flags = static_cast<std::uint8_t>((i * 2654435761u >> 20) & kRequestFlags);
   return rays;
 }
 

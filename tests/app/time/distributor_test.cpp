@@ -104,7 +104,7 @@ TEST_F(DistributorMachine, PrimitiveResultsGoPastTheCollections) {
     const Json ring = report(machine),
                central = report(machine, {"topology.shape=central", fmt::format("topology.form={}", form)});
     const auto per_packet = [](const Json& r) {
-      return r["resources"][0]["units"]["handler_busy"].get<double>() / r["packets"]["issued"].get<double>();
+      return r["resources"][0]["units"]["dispatch_busy"].get<double>() / r["packets"]["issued"].get<double>();
     };
     EXPECT_LT(per_packet(central), per_packet(ring)) << form;
     EXPECT_EQ(central["digest"], ring["digest"]);

@@ -25,8 +25,8 @@ class ResourceLedger : public TimedRun {
         }
         EXPECT_EQ(sum, cycles) << bank;
       }
-      EXPECT_EQ(resource["units"]["handler_busy"].get<std::uint64_t>() +
-                    resource["units"]["handler_idle"].get<std::uint64_t>(),
+      EXPECT_EQ(resource["units"]["dispatch_busy"].get<std::uint64_t>() +
+                    resource["units"]["dispatch_idle"].get<std::uint64_t>(),
                 cycles);
     }
     for (const Json& link : report["links"]) {

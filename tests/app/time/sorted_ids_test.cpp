@@ -10,7 +10,7 @@ class SortedIds : public TimedRun {
  protected:
   static double dispatch_cycles(const Json& report) {
     double sum = 0;
-    for (const Json& resource : report["resources"]) sum += resource["units"]["handler_busy"].get<double>();
+    for (const Json& resource : report["resources"]) sum += resource["units"]["dispatch_busy"].get<double>();
     return sum;
   }
   /// The rays in all packets. But for the rays that begin, each has joined a collection when another packet retired.

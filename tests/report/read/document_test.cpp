@@ -113,7 +113,7 @@ TEST(DocumentReader, RefusesWhatWasChangedAfterItWasWritten) {
 
 TEST(DocumentReader, RefusesOtherVersionsByName) {
   EXPECT_THAT(refusal_of_run([](Json& json) { json["schema_version"] = 7; }),
-              HasSubstr("schema_version: this program reads version 1, found 7"));
+              HasSubstr("schema_version: this program reads version 2, found 7"));
   // A shape of another program is told apart from a damaged file.
   EXPECT_THAT(refusal_of_run([](Json& json) { json["engine"].erase("deterministic"); }),
               HasSubstr("(written by Carousel '1.2.3', commit 'abc'; this is "));

@@ -107,7 +107,7 @@ inline RayLife sample_life() {
 }
 
 inline nlohmann::ordered_json sample_sweep() {
-  return nlohmann::ordered_json::parse(R"({"schema_version": 1, "carousel": {"version": "1", "commit": "a"},
+  return nlohmann::ordered_json::parse(R"({"schema_version": 2, "carousel": {"version": "1", "commit": "a"},
     "config": "a.yaml", "keys": ["topology.resources"], "results": ["cycles", "gain"], "greater_is_better": ["gain"],
     "points": [
       {"point": "0a", "status": "done", "keys": {"topology.resources": 2}, "results": {"cycles": 100, "gain": 0.5},
@@ -123,7 +123,7 @@ inline nlohmann::ordered_json sample_sweep() {
 }
 
 inline std::vector<SampleDocument> sample_documents() {
-  nlohmann::ordered_json point{{"schema_version", 1},
+  nlohmann::ordered_json point{{"schema_version", 2},
                                {"point", "0a"},
                                {"status", "done"},
                                {"keys", {{"topology.resources", 2}}},

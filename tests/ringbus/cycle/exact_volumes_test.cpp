@@ -52,20 +52,20 @@ TEST(TesterLimited, LiftsAllButTheTestUnits) {
   Config config = parse_config("scene: {builtin: cornell}\n", "machine.yaml");
   config.engine.kind = EngineKind::kCycle;
   config.topology.resources = 4;
-  const Config lifted = tester_limited(config);
+  const Config relaxed = tester_limited(config);
   for (const UnitKindRow& row : kUnitKinds) {
-    EXPECT_EQ(lifted.testers.units[row.kind].units, config.testers.units[row.kind].units) << row.key;
-    EXPECT_EQ(lifted.testers.units[row.kind].latency_cycles, config.testers.units[row.kind].latency_cycles) << row.key;
+    EXPECT_EQ(relaxed.testers.units[row.kind].units, config.testers.units[row.kind].units) << row.key;
+    EXPECT_EQ(relaxed.testers.units[row.kind].latency_cycles, config.testers.units[row.kind].latency_cycles) << row.key;
   }
-  EXPECT_EQ(lifted.topology.resources, 4);
-  EXPECT_EQ(lifted.topology.shape, config.topology.shape);
-  EXPECT_EQ(lifted.collections.partial, config.collections.partial);
-  EXPECT_EQ(lifted.memory.dram_bytes_per_cycle, 64 * config.memory.dram_bytes_per_cycle);
-  EXPECT_EQ(lifted.memory.shape_buffer_kib, 64 * config.memory.shape_buffer_kib);
-  EXPECT_EQ(lifted.topology.link.latency_cycles, 1);
-  EXPECT_EQ(lifted.testers.contexts, 64);  // the end of its range
-  EXPECT_EQ(lifted.rays.slots_per_resource, 4 * config.rays.slots_per_resource);
-  EXPECT_GT(shader_workers(lifted), 16 * shader_workers(config));
+  EXPECT_EQ(relaxed.topology.resources, 4);
+  EXPECT_EQ(relaxed.topology.shape, config.topology.shape);
+  EXPECT_EQ(relaxed.collections.partial, config.collections.partial);
+  EXPECT_EQ(relaxed.memory.dram_bytes_per_cycle, 64 * config.memory.dram_bytes_per_cycle);
+  EXPECT_EQ(relaxed.memory.shape_buffer_kib, 64 * config.memory.shape_buffer_kib);
+  EXPECT_EQ(relaxed.topology.link.latency_cycles, 1);
+  EXPECT_EQ(relaxed.testers.contexts, 64);  // the end of its range
+  EXPECT_EQ(relaxed.rays.slots_per_resource, 4 * config.rays.slots_per_resource);
+  EXPECT_GT(shader_workers(relaxed), 16 * shader_workers(config));
 }
 
 }  // namespace

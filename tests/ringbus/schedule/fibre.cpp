@@ -56,7 +56,7 @@ Fibre::~Fibre() {
   if (body_) munmap(stack_, stack_bytes_);
 }
 
-void Fibre::go_on(Fibre& running) {
+void Fibre::resume(Fibre& running) {
   fibre_entered = this;
   fibre_left = &running;
   tell_leaving(&running.shadow_, stack_, stack_bytes_);

@@ -22,7 +22,7 @@ class Fibre {
   Fibre& operator=(const Fibre&) = delete;
 
   /// Leaves `running`, which calls, and goes on with this fibre. Returns when something switches to `running`.
-  void go_on(Fibre& running);
+  void resume(Fibre& running);
 
  private:
   static constexpr std::size_t kStackBytes = std::size_t{1} << 18;

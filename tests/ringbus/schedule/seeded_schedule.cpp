@@ -67,7 +67,7 @@ void SeededSchedule::yield() {
   const std::size_t next = choose();
   if (next == running_) return;
   Fibre& from = *agents_[std::exchange(running_, next)].fibre;
-  agents_[next].fibre->go_on(from);
+  agents_[next].fibre->resume(from);
 }
 
 void SeededSchedule::start(std::function<void()> body) {

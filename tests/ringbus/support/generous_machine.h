@@ -34,7 +34,7 @@ inline Config generous_machine() {
 struct Plant {
   std::string name;  ///< name of the class of parts that is scarce
   std::function<void(Config&)> make;
-  double longer = 0;  ///< by how much the lift may make the run longer, where the class does not limit the machine
+  double longer = 0;  ///< by how much the what_if may make the run longer, where the class does not limit the machine
 };
 
 inline RunResult run_whole(TestScene& scene, const Config& config) {

@@ -90,7 +90,8 @@ class ScatterWorkload final : public Workload {
   /// Most rays want nothing in particular.
   std::uint8_t wish(std::uint32_t path, std::uint32_t bounce) const {
     const float n = number(path, bounce, 9);
-    return ray_flags_ && n < 0.25f ? static_cast<std::uint8_t>(static_cast<int>(n * 64) & kRayWishes) : std::uint8_t{0};
+    return ray_flags_ && n < 0.25f ? static_cast<std::uint8_t>(static_cast<int>(n * 64) & kRequestFlags)
+                                   : std::uint8_t{0};
   }
   float number(std::uint32_t path, std::uint32_t bounce, int dimension) const {
     std::uint64_t x = (std::uint64_t{seed_} << 32 | path) * 0x9e3779b97f4a7c15ull + bounce * 64u +

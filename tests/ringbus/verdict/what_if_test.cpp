@@ -1,5 +1,5 @@
 // The verdict names the bottleneck: each is planted in turn in a machine that has plenty of everything else; and on
-// random machines the class it names, from a pilot only, is the one whose lift gains most in the whole run.
+// random machines the class it names, from a pilot only, is the one whose what_if gains most in the whole run.
 #include "ringbus/verdict/what_if.h"
 
 #include <gtest/gtest.h>
@@ -20,7 +20,7 @@ std::vector<Plant> plants() {
        [](Config& c) {
          c.testers.units[UnitKind::kTriangle] = {1, 40, 40};
        }},
-      {"handling", [](Config& c) { c.packets.ids_per_cycle = 1, c.packets.rays = c.collections.ready = 128; }},
+      {"dispatch", [](Config& c) { c.packets.ids_per_cycle = 1, c.packets.rays = c.collections.ready = 128; }},
       {"link_bandwidth", [](Config& c) { c.topology.link.bytes_per_cycle = 1; }},
       {"memory_bandwidth", [](Config& c) { c.memory.dram_bytes_per_cycle = 1, c.memory.l2_kib = 1; }},
       {"memory_latency",
@@ -145,13 +145,12 @@ TEST(WhatIf, PredictsRandomMachines) {
     const Bottleneck found = search(scene, config, kPaths, run);
     ASSERT_FALSE(found.gains.empty()) << found.unlike << ", seed " << seed;
     EXPECT_FALSE(found.whole);
-    const std::vector<WhatIf> lifts = what_ifs(config, scene.accel(config.bvh));
+    const std::vector<WhatIf> all = what_ifs(config, scene.accel(config.bvh));
     double best = 0, named = 0;
     for (const Gain& gain : found.gains) {
       if (gain.high < 0.05) continue;
-      const auto lift =
-          std::find_if(lifts.begin(), lifts.end(), [&](const auto& one) { return one.name == gain.name; });
-      const double cycles = static_cast<double>(run_whole(scene, lift->relaxed).cycle->cycles);
+      const auto what_if = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == gain.name; });
+      const double cycles = static_cast<double>(run_whole(scene, what_if->relaxed).cycle->cycles);
       const double real = static_cast<double>(run.cycle->cycles) / cycles - 1;
       best = std::max(best, real);
       if (&gain == &found.gains.front()) named = real;

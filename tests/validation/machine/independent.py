@@ -28,14 +28,14 @@ class IndependentTile:
             rays = self.control.new_rays.take()
             self.trace.note(now, self.number, "new_rays", 0, len(rays))
             for ray in rays:
-                self.go_on(Thread(ray, self.nodes, self.transforms, self.order), now)
+                self.advance(Thread(ray, self.nodes, self.transforms, self.order), now)
         self.shapes.take_answers(now)
         self.serve(now)
         while self.tests and self.tests[0][0] <= now:
             thread = heapq.heappop(self.tests)[2]
             self.trace.note(now, self.number, "tested_ray", thread.ray.slot, 1)
             self.shapes.release(thread.user, now)
-            self.go_on(thread, now)
+            self.advance(thread, now)
             self.serve(now)
         if self.done:
             self.trace.note(now, self.number, "complete", 0, len(self.done))
@@ -47,7 +47,7 @@ class IndependentTile:
         for user in ready:
             self.test(user.owner, now)
 
-    def go_on(self, thread, now):
+    def advance(self, thread, now):
         thread.node = thread.walk.next()
         if thread.node is None:
             self.done.append(thread.ray)

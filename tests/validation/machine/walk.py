@@ -79,9 +79,9 @@ class Visits:
             if at > now:
                 self.add(at, ray)
             else:
-                self.go_on(ray, now)
+                self.advance(ray, now)
 
-    def go_on(self, ray, now):
+    def advance(self, ray, now):
         if ray.at == len(ray.steps):
             ray.visit.left -= 1
             return
@@ -112,7 +112,7 @@ class Visits:
             if ray.in_test:
                 ray.in_test = False
                 self.shapes.release(ray.user, now)
-            self.go_on(ray, now)
+            self.advance(ray, now)
             self.serve(now, others)
 
     def serve(self, now, others):

@@ -37,11 +37,11 @@ class FailStop {
 
   /// Nothing is under way any more. Tells whether ray control has to be told so; once until begin_anew().
   bool tells_drained() {
-    const bool tells = !told_drained_;
-    told_drained_ = true;
+    const bool tells = !drained_sent_;
+    drained_sent_ = true;
     return tells;
   }
-  void begin_anew() { told_drained_ = false; }
+  void begin_anew() { drained_sent_ = false; }
 
   void count_discarded(std::uint64_t packets) { discarded_ += packets; }
   std::uint64_t packets_discarded() const { return discarded_; }
@@ -50,7 +50,7 @@ class FailStop {
   bool is_due(std::uint64_t completed) const { return completed >= static_cast<std::uint64_t>(fault_.after_rays); }
 
   FaultsConfig::Resource fault_;
-  bool is_here_, pauses_ = false, stops_ = false, told_drained_ = false;
+  bool is_here_, pauses_ = false, stops_ = false, drained_sent_ = false;
   std::uint64_t discarded_ = 0;
 };
 

@@ -63,7 +63,7 @@ Cycle RayEntry::take_slots(Packet& packet, Cycle now) {
 }
 
 void RayEntry::return_home(PacketId id, Cycle now) {
-  travelling_.come_home(machine_.packet(id), now);
+  travelling_.retire_at_owner(machine_.packet(id), now);
   note_placed(now);
   logic_.discard(id);
 }

@@ -25,7 +25,7 @@ void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now) {
     if (at > now)
       events_.add(now, at, index);
     else
-      go_on(index, now);
+      advance(index, now);
   }
 }
 
@@ -40,7 +40,7 @@ std::uint32_t SubtreeVisits::new_ray() {
 }
 
 /// The ray comes to its next strip, or ends.
-void SubtreeVisits::go_on(std::uint32_t index, Cycle now) {
+void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
   Ray& ray = rays_[index];
   Visit& visit = visits_[ray.context];
   if (ray.step == ray.end) {
@@ -89,7 +89,7 @@ void SubtreeVisits::run(Cycle now) {
       --in_test_;
       shapes_.release(first_user_ + index, now);
     }
-    go_on(index, now);
+    advance(index, now);
     if (!shapes_.ready().empty()) serve(now);
   }
 }

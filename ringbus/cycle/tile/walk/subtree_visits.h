@@ -68,7 +68,7 @@ class SubtreeVisits {
   };
 
   std::uint32_t new_ray();
-  void go_on(std::uint32_t index, Cycle now);
+  void advance(std::uint32_t index, Cycle now);
   void test(std::uint32_t index, Cycle now);
 
   const ShapeMemory& memory_;

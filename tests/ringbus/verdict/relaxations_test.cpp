@@ -36,7 +36,7 @@ void shade_in_vectors(Config& c, std::int64_t lanes) {
   c.shading.lanes = lanes;
 }
 
-// Each class has a machine that it limits: relaxing it makes the run shorter. Before issue 16 some lifts changed
+// Each class has a machine that it limits: relaxing it makes the run shorter. Before issue 16 some what_ifs changed
 // nothing, and many keys that cost hardware had no class. In three machines it is scarce but does not limit: more
 // bundles are open for longer, with twice the least storage collections go out that would have filled, and vectors of
 // rays that are sorted sooner are emptier (+3, +15 and +1 %).
@@ -127,9 +127,11 @@ TEST(WhatIf, EveryLiftIsNoticed) {
     if (config.collections.capacity == 0)  // as little as there may be
       config.collections.capacity = minimum_capacity(config, accel.width, accel.max_depth);
     const std::vector<WhatIf> all = what_ifs(config, accel);
-    const auto lift = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == plant.name; });
-    ASSERT_NE(lift, all.end()) << plant.name;
-    const Cycle before = run_whole(scene, config).cycle->cycles, after = run_whole(scene, lift->relaxed).cycle->cycles;
+    const auto what_if =
+        std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == plant.name; });
+    ASSERT_NE(what_if, all.end()) << plant.name;
+    const Cycle before = run_whole(scene, config).cycle->cycles,
+                after = run_whole(scene, what_if->relaxed).cycle->cycles;
     EXPECT_NE(after, before) << plant.name;
     EXPECT_LE(static_cast<double>(after), static_cast<double>(before) * (1 + plant.longer)) << plant.name;
   }
@@ -142,15 +144,15 @@ TEST(WhatIf, LiftsWhatTheMachineHas) {
   };
   Config c = generous_machine();
   c.topology.link.latency_cycles = 4;
-  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling", "contexts"})
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "dispatch", "contexts"})
     EXPECT_TRUE(has(c, name)) << name;
   c.topology.shape = TopologyShape::kIndependent;
-  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "handling", "contexts"})
+  for (const char* name : {"link_bandwidth", "link_latency", "packets_in_flight", "dispatch", "contexts"})
     EXPECT_FALSE(has(c, name)) << name;
   EXPECT_TRUE(has(c, "memory_latency"));
 }
 
-// A user who sets these keys runs the machine that was simulated; keys at the end of their range have no lift.
+// A user who sets these keys runs the machine that was simulated; keys at the end of their range have no what_if.
 TEST(WhatIf, SaysWhatToSet) {
   const std::string text =
       "scene: {builtin: cornell}\nengine: {kind: cycle}\nmemory: {dram_bytes_per_cycle: 65536}\n"
