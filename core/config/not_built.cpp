@@ -1,12 +1,12 @@
 #include "core/config/not_built.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "core/config/row_walk.h"
 #include "core/config/schema.h"
 #include "core/config/write.h"
 
@@ -16,45 +16,54 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using enum NotBuilt::Without;
+using config::RowWalk;
 
-constexpr auto kTable = std::to_array<NotBuilt>({
-    {"topology.shape", "multi_ring", kNative},
-    {"topology.shape", "hierarchical", kNative},
-    {"topology.shape", "bus", kNative},
-    {"topology.shape", "independent", kNative},
-    {"topology.shape", "central", kNative},
-    {"topology.link.queue", "", kCycle, "real queues"},
-    {"shading.queue", "", kCycle, "real queues"},
-    {"shading.queue_depth", "", kCycle, "real queues"},
-    {"rays.queue", "", kCycle, "real queues"},
-    {"rays.queue_depth", "", kCycle, "real queues"},
-    {"collections.partial", "after", kNative, "clock for collections that wait"},
-    {"collections.sort_ids_per_cycle", "", kNative, "clock for the sorting of ray IDs"},
-    {"collections.key", "block", kNative, "simulated memory"},
-    {"rays.banks", "", kNative, "simulated ray memory"},
-    {"packets.carry", "data", kNative, "packets that carry data"},
-    {"packets.results", "", kNative, "wire on which results could travel otherwise"},
-    {"accuracy.transformed_ray", "store", kNative, "choice of where model-space rays are kept"},
-    {"accuracy.instance_data", "", kNative, "choice of stored matrices"},
-    {"accuracy.invert", "", kNative, "choice of stored matrices"},
-    {"bundles.edges", "parallel", kNative, "clock for parallel edges"},
-    {"testers.window", "", kNative, "choice among packets that have arrived"},
-    {"energy.profile", "n45", kNative, "count of joules"},
-    {"energy.profile", "n7", kNative, "count of joules"},
-    {"testers.any_hit", "shader", kNative, "any-hit calls by shader workers"},
-    {"testers.bundle_blocks", "", kNative, "clock for bundle units"},
-    {"memory.fetch", "multicast", kNative, "simulated memory"},
-    {"memory.ray_records", "master", kNative, "simulated memory"},
-    {"memory.path_state", "memory", kNative, "simulated memory"},
-    {"memory.film", "memory", kNative, "simulated memory"},
-    {"bvh.leaves", "strips", kNative, "simulated memory"},
-    {"memory.strip_end", "flag", kNative, "simulated memory"},
-    {"shading.idle_resources_shade", "true", kNative, "shading by idle resources"},
-    {"shading.lanes", "", kNative, "vectors of a shader worker"},
-    {"shading.sort", "shader", kNative, "vectors of a shader worker"},
-    {"shading.distribute", "", kNative, "choice of shader workers"},
-    {"sampling.fraction", "", kNative, "sampled runs"},
-});
+/// The visitor of rows that only one engine has.
+class EngineRows : public RowWalk<EngineRows> {
+ public:
+  template <class T>
+  struct Rest {
+    EngineRows& rows;
+    std::string path;
+
+    template <class... Args>
+    Rest relax(const Args&...) const {
+      return *this;
+    }
+    template <class... Values>
+    Rest only(EngineKind engine, const char* thing, Values... values) const {
+      if (rows.in_override()) return *this;
+      const NotBuilt::Without without = engine == EngineKind::kCycle ? kNative : kCycle;
+      if constexpr (sizeof...(values) == 0) rows.table.push_back({path, "", without, thing});
+      (rows.table.push_back({path, text(values), without, thing}), ...);
+      return *this;
+    }
+
+   private:
+    static std::string text(bool value) { return value ? "true" : "false"; }
+    template <class E>
+    static std::string text(E value) {
+      return std::string(enum_name(value));
+    }
+  };
+  template <class T>
+  Rest<T> rest(std::string path, T&) {
+    return {*this, std::move(path)};
+  }
+
+  using RowWalk::in_override;
+  std::vector<NotBuilt> table;
+};
+
+const std::vector<NotBuilt>& table() {
+  static const std::vector<NotBuilt> rows = [] {
+    EngineRows walk;
+    Config config;
+    describe(walk, config);
+    return std::move(walk.table);
+  }();
+  return rows;
+}
 
 std::string text_of(const Json& value) {
   return value.is_string() ? value.get<std::string>() : value.dump();
@@ -88,7 +97,7 @@ bool means(const NotBuilt& row, std::string_view key, std::string_view value) {
 }
 
 bool takes(EngineKind engine, std::string_view key, std::string_view value) {
-  for (const NotBuilt& row : kTable)
+  for (const NotBuilt& row : table())
     if (lacks(row, engine) && means(row, key, value)) return false;
   return true;
 }
@@ -107,7 +116,7 @@ std::string instead(EngineKind engine, std::string_view key) {
 }  // namespace
 
 std::span<const NotBuilt> not_built() {
-  return kTable;
+  return table();
 }
 
 namespace config {
@@ -133,7 +142,7 @@ std::vector<Refusal> refusals(const Config& config) {
     if (!row.thing.empty()) message += ", found " + found;
     out.push_back({key, std::move(message)});
   };
-  for (const NotBuilt& row : kTable) {
+  for (const NotBuilt& row : table()) {
     if (!lacks(row, engine)) continue;
     check(values, row, std::string(row.key));
     if (!row.key.starts_with("testers.")) continue;

@@ -13,13 +13,14 @@ namespace carousel {
 /// machine (times, widths, sizes) mean nothing to the native engine, whose clock is the wall; it ignores them, so that
 /// one file serves both engines.
 struct NotBuilt {
-  std::string_view key;
-  std::string_view value;  ///< as in a file; empty: every value but the default
+  std::string key;
+  std::string value;  ///< as in a file; empty: every value but the default
   enum class Without { kNative, kCycle, kBoth } without;
-  std::string_view thing{};  ///< the words for the value in messages; empty: the value itself
+  std::string thing{};  ///< the words for the value in messages; empty: the value itself
 };
 
-/// The one table of them. Validation, schema, documentation and the test of keys derive from it.
+/// All of them, as the rows of the keys say (`.only` in core/config/fields). Validation, schema, documentation and the
+/// test of keys derive from it.
 std::span<const NotBuilt> not_built();
 
 namespace config {

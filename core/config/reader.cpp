@@ -82,7 +82,7 @@ void Reader::wrong(const Node& node, const std::string& expected, const std::str
   issues_.push_back({node.position, path(), fmt::format("expected {}, found {}{}", expected, node.found(), hint)});
 }
 
-void Reader::field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*) {
+void Reader::on_field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (const auto number = integer_of(*visit.node, range))
@@ -101,14 +101,14 @@ void Reader::real(std::string_view key, Real& value, RealRange range, const char
     wrong(*visit.node, expected_real(range, unit));
 }
 
-void Reader::field(std::string_view key, float& value, RealRange range, const char* unit, const char*) {
+void Reader::on_field(std::string_view key, float& value, RealRange range, const char* unit, const char*) {
   real(key, value, range, unit);
 }
-void Reader::field(std::string_view key, double& value, RealRange range, const char* unit, const char*) {
+void Reader::on_field(std::string_view key, double& value, RealRange range, const char* unit, const char*) {
   real(key, value, range, unit);
 }
 
-void Reader::field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*) {
+void Reader::on_field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*) {
   vector(key, value, range, unit, "a list of 3 numbers");
 }
 
@@ -125,7 +125,7 @@ void Reader::vector(std::string_view key, Vec3& value, RealRange range, const ch
   }
 }
 
-void Reader::field(std::string_view key, bool& value, const char*, const char*) {
+void Reader::on_field(std::string_view key, bool& value, const char*, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (visit.node->kind == Node::Kind::kBool)
@@ -134,7 +134,7 @@ void Reader::field(std::string_view key, bool& value, const char*, const char*) 
     wrong(*visit.node, "true or false");
 }
 
-void Reader::field(std::string_view key, std::string& value, const char*, const char*) {
+void Reader::on_field(std::string_view key, std::string& value, const char*, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   // A file may well be called 12 or true.
@@ -144,8 +144,8 @@ void Reader::field(std::string_view key, std::string& value, const char*, const 
     wrong(*visit.node, "a text that is not empty");
 }
 
-void Reader::field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
-                           const char*) {
+void Reader::on_field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range,
+                              const char* unit, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (visit.node->kind == Node::Kind::kString && visit.node->text == "auto")
@@ -161,8 +161,8 @@ bool Reader::is_auto(std::string_view key) const {
   return node && node->kind == Node::Kind::kString && node->text == "auto";
 }
 
-void Reader::field_or_auto(std::string_view key, std::optional<float>& value, RealRange range, const char* unit,
-                           const char*) {
+void Reader::on_field_or_auto(std::string_view key, std::optional<float>& value, RealRange range, const char* unit,
+                              const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (is_auto(key))
@@ -173,8 +173,8 @@ void Reader::field_or_auto(std::string_view key, std::optional<float>& value, Re
     wrong(*visit.node, "auto or " + expected_real(range, unit));
 }
 
-void Reader::field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange range, const char* unit,
-                           const char*) {
+void Reader::on_field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange range, const char* unit,
+                              const char*) {
   if (!scopes_.back().node->find(key) || is_auto(key)) {
     const Visit known(*this, key);
     return value.reset();
@@ -191,7 +191,7 @@ std::optional<std::size_t> Reader::choose(const Node& node, const std::vector<st
   return std::nullopt;
 }
 
-void Reader::section_or_number(std::string_view key, TesterUnits& value, const char*) {
+void Reader::on_section_or_number(std::string_view key, TesterUnits& value, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (visit.node->kind == Node::Kind::kMap) return read(*visit.node, value);

@@ -11,7 +11,7 @@ namespace carousel::config {
 
 /// The visitor that fills a Config from a tree. Nothing is thrown: what is wrong becomes an issue, and the
 /// field keeps its default.
-class Reader {
+class Reader : public RowVisitor<Reader> {
  public:
   Reader(std::vector<ConfigIssue>& issues, const TestersConfig& base) : issues_(issues), base_testers_(base) {}
 
@@ -25,28 +25,30 @@ class Reader {
     scopes_.pop_back();
   }
 
-  void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*);
-  void field(std::string_view key, float& value, RealRange range, const char* unit, const char*);
-  void field(std::string_view key, double& value, RealRange range, const char* unit, const char*);
-  void field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*);
-  void field(std::string_view key, bool& value, const char*, const char*);
-  void field(std::string_view key, std::string& value, const char*, const char*);
-  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
-                     const char*);
-  void field_or_auto(std::string_view key, std::optional<float>& value, RealRange range, const char* unit, const char*);
-  void field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange range, const char* unit, const char*);
+  void on_field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char*);
+  void on_field(std::string_view key, float& value, RealRange range, const char* unit, const char*);
+  void on_field(std::string_view key, double& value, RealRange range, const char* unit, const char*);
+  void on_field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*);
+  void on_field(std::string_view key, bool& value, const char*, const char*);
+  void on_field(std::string_view key, std::string& value, const char*, const char*);
+  void on_field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
+                        const char*);
+  void on_field_or_auto(std::string_view key, std::optional<float>& value, RealRange range, const char* unit,
+                        const char*);
+  void on_field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange range, const char* unit,
+                        const char*);
 
   template <class E>
-  void choice(std::string_view key, E& value, const char*) {
+  void on_choice(std::string_view key, E& value, const char*) {
     const Visit visit(*this, key);
     if (!visit.node) return;
     if (const auto index = choose(*visit.node, names<E>())) value = kEnumNames<E>[*index].value;
   }
   template <class E>
-  void choice(std::string_view key, std::optional<E>& value, const char* meaning) {
+  void on_choice(std::string_view key, std::optional<E>& value, const char* meaning) {
     E chosen{};
     const std::size_t before = issues_.size();
-    choice(key, chosen, meaning);
+    on_choice(key, chosen, meaning);
     if (issues_.size() == before && scopes_.back().node->find(key)) value = chosen;
   }
 
@@ -61,7 +63,7 @@ class Reader {
     if (visit.node) read(*visit.node, value.emplace());
   }
 
-  void section_or_number(std::string_view key, TesterUnits& value, const char*);
+  void on_section_or_number(std::string_view key, TesterUnits& value, const char*);
   void list(std::string_view key, std::vector<ResourceOverride>& value, const char*);
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*);
   void workload(std::string_view key, WorkloadConfig& value, const char*);

@@ -20,7 +20,7 @@ namespace config {
 namespace {
 
 /// The visitor that writes the schema of the struct it is shown, with that struct's values as defaults.
-class SchemaWriter {
+class SchemaWriter : public RowVisitor<SchemaWriter> {
  public:
   template <class T>
   static Json object(T value, const char* meaning) {
@@ -33,50 +33,50 @@ class SchemaWriter {
     return out;
   }
 
-  void field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char* meaning) {
+  void on_field(std::string_view key, std::int64_t& value, IntRange range, const char* unit, const char* meaning) {
     Json out = integer(range);
     out["default"] = value;
     put(key, std::move(out), unit, meaning);
   }
-  void field(std::string_view key, float& value, RealRange range, const char* unit, const char* meaning) {
+  void on_field(std::string_view key, float& value, RealRange range, const char* unit, const char* meaning) {
     Json out = real(range);
     out["default"] = shortest(value);
     put(key, std::move(out), unit, meaning);
   }
-  void field(std::string_view key, double& value, RealRange range, const char* unit, const char* meaning) {
+  void on_field(std::string_view key, double& value, RealRange range, const char* unit, const char* meaning) {
     Json out = real(range);
     out["default"] = value;
     put(key, std::move(out), unit, meaning);
   }
-  void field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* meaning) {
+  void on_field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* meaning) {
     Json out = vector(range);
     out["default"] = {shortest(value.x), shortest(value.y), shortest(value.z)};
     put(key, std::move(out), unit, meaning);
   }
-  void field(std::string_view key, bool& value, const char* unit, const char* meaning) {
+  void on_field(std::string_view key, bool& value, const char* unit, const char* meaning) {
     put(key, {{"type", "boolean"}, {"default", value}}, unit, meaning);
   }
-  void field(std::string_view key, std::string&, const char* unit, const char* meaning) {
+  void on_field(std::string_view key, std::string&, const char* unit, const char* meaning) {
     put(key, {{"type", "string"}, {"minLength", 1}}, unit, meaning);
   }
-  void field_or_auto(std::string_view key, std::optional<std::int64_t>&, IntRange range, const char* unit,
-                     const char* meaning) {
+  void on_field_or_auto(std::string_view key, std::optional<std::int64_t>&, IntRange range, const char* unit,
+                        const char* meaning) {
     put(key, or_auto(integer(range)), unit, meaning);
   }
-  void field_or_auto(std::string_view key, std::optional<float>&, RealRange range, const char* unit,
-                     const char* meaning) {
+  void on_field_or_auto(std::string_view key, std::optional<float>&, RealRange range, const char* unit,
+                        const char* meaning) {
     put(key, or_auto(real(range)), unit, meaning);
   }
-  void field_or_auto(std::string_view key, std::optional<Vec3>&, RealRange range, const char* unit,
-                     const char* meaning) {
+  void on_field_or_auto(std::string_view key, std::optional<Vec3>&, RealRange range, const char* unit,
+                        const char* meaning) {
     put(key, or_auto(vector(range)), unit, meaning);
   }
   template <class E>
-  void choice(std::string_view key, E& value, const char* meaning) {
+  void on_choice(std::string_view key, E& value, const char* meaning) {
     put(key, {{"enum", names<E>()}, {"default", enum_name(value)}}, "", meaning);
   }
   template <class E>
-  void choice(std::string_view key, std::optional<E>&, const char* meaning) {
+  void on_choice(std::string_view key, std::optional<E>&, const char* meaning) {
     put(key, {{"enum", names<E>()}}, "", meaning);
   }
   template <class T>
@@ -87,7 +87,7 @@ class SchemaWriter {
   void section(std::string_view key, std::optional<T>&, const char* meaning) {
     properties_[std::string(key)] = object(T{}, meaning);
   }
-  void section_or_number(std::string_view key, TesterUnits& value, const char* meaning) {
+  void on_section_or_number(std::string_view key, TesterUnits& value, const char* meaning) {
     const Json section = object(value, "");
     Json units = section["properties"]["units"];
     units.erase("default");

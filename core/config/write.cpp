@@ -25,7 +25,7 @@ namespace config {
 namespace {
 
 /// The visitor that writes the values of the struct it is shown.
-class JsonWriter {
+class JsonWriter : public RowVisitor<JsonWriter> {
  public:
   template <class T>
   static Json object(T value) {
@@ -34,31 +34,31 @@ class JsonWriter {
     return std::move(writer.out_);
   }
 
-  void field(std::string_view key, std::int64_t& value, IntRange, const char*, const char*) { put(key, value); }
-  void field(std::string_view key, float& value, RealRange, const char*, const char*) { put(key, shortest(value)); }
-  void field(std::string_view key, double& value, RealRange, const char*, const char*) { put(key, value); }
-  void field(std::string_view key, Vec3& value, RealRange, const char*, const char*) {
+  void on_field(std::string_view key, std::int64_t& value, IntRange, const char*, const char*) { put(key, value); }
+  void on_field(std::string_view key, float& value, RealRange, const char*, const char*) { put(key, shortest(value)); }
+  void on_field(std::string_view key, double& value, RealRange, const char*, const char*) { put(key, value); }
+  void on_field(std::string_view key, Vec3& value, RealRange, const char*, const char*) {
     put(key, {shortest(value.x), shortest(value.y), shortest(value.z)});
   }
-  void field(std::string_view key, bool& value, const char*, const char*) { put(key, value); }
-  void field(std::string_view key, std::string& value, const char*, const char*) {
+  void on_field(std::string_view key, bool& value, const char*, const char*) { put(key, value); }
+  void on_field(std::string_view key, std::string& value, const char*, const char*) {
     if (!value.empty()) put(key, value);
   }
-  void field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange, const char*, const char*) {
+  void on_field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange, const char*, const char*) {
     put(key, value ? Json(*value) : Json("auto"));
   }
-  void field_or_auto(std::string_view key, std::optional<float>& value, RealRange, const char*, const char*) {
+  void on_field_or_auto(std::string_view key, std::optional<float>& value, RealRange, const char*, const char*) {
     put(key, value ? Json(shortest(*value)) : Json("auto"));
   }
-  void field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange, const char*, const char*) {
+  void on_field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange, const char*, const char*) {
     put(key, value ? Json{shortest(value->x), shortest(value->y), shortest(value->z)} : Json("auto"));
   }
   template <class E>
-  void choice(std::string_view key, E& value, const char*) {
+  void on_choice(std::string_view key, E& value, const char*) {
     put(key, enum_name(value));
   }
   template <class E>
-  void choice(std::string_view key, std::optional<E>& value, const char*) {
+  void on_choice(std::string_view key, std::optional<E>& value, const char*) {
     if (value) put(key, enum_name(*value));
   }
   template <class T>
@@ -69,7 +69,7 @@ class JsonWriter {
   void section(std::string_view key, std::optional<T>& value, const char*) {
     if (value) put(key, object(*value));
   }
-  void section_or_number(std::string_view key, TesterUnits& value, const char*) { put(key, object(value)); }
+  void on_section_or_number(std::string_view key, TesterUnits& value, const char*) { put(key, object(value)); }
   template <class T>
   void list(std::string_view key, std::vector<T>& value, const char*) {
     Json items = Json::array();

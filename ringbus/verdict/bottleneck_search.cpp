@@ -135,7 +135,7 @@ class Search {
     std::vector<std::vector<std::size_t>> out;
     std::vector<std::size_t> of_idle;
     for (std::size_t i = 0; i < what_ifs_.size(); ++i) {
-      if (idle(what_ifs_[i].name))
+      if (idle(what_ifs_[i].name()))
         of_idle.push_back(i);
       else
         out.push_back({i});
@@ -174,7 +174,7 @@ class Search {
       }
       for (std::size_t k = 0; k < tried.size(); ++k) {
         const bool warms =
-            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return what_ifs_[i].keeps_shapes; });
+            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return what_ifs_[i].part.how.keeps_shapes; });
         const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0, warms);
         if (tried[k].size() == 1) relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
         // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
@@ -196,8 +196,10 @@ class Search {
 
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
-    out_.gains[i] = {what_ifs_[i].name, what_ifs_[i].action, what_ifs_[i].sets, rate * (1 + gain.value), gain.value,
-                     gain.low,          gain.high,           together};
+    out_.gains[i] = {what_ifs_[i].name(), what_ifs_[i].part.action,
+                     what_ifs_[i].sets,   rate * (1 + gain.value),
+                     gain.value,          gain.low,
+                     gain.high,           together};
   }
 
   /// Relaxes each of these classes with the present pilot.
@@ -214,7 +216,9 @@ class Search {
   void estimate(const std::vector<std::size_t>& classes) {
     for (const std::size_t i : classes) {
       const RunResult& result = relaxed_[i].result;
-      note(i, foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), what_ifs_[i].keeps_shapes), 1);
+      note(i,
+           foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), what_ifs_[i].part.how.keeps_shapes),
+           1);
     }
   }
 

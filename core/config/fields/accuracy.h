@@ -2,6 +2,7 @@
 
 #include <optional>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -88,13 +89,16 @@ void describe(V& v, AccuracyConfig& c) {
            "The distance of a new ray's origin from its surface: 1e-4 scene units (epsilon), 256 ulp (Waechter, Binder "
            "2019), or as far as rounding can reach (bound).");
   v.choice("transformed_ray", c.transformed_ray,
-           "A ray is brought to model space at each visit, or once for an instance and kept there (24 bytes).");
+           "A ray is brought to model space at each visit, or once for an instance and kept there (24 bytes).")
+      .only(EngineKind::kCycle, "choice of where model-space rays are kept", AccuracyConfig::TransformedRay::kStore);
   v.choice("instance_data", c.instance_data,
            "The data of an instance in memory: its matrix (forward), the inverse of the linear part beside the "
-           "translation (rt), or the inverse matrix. Without this key it is as the transform reads it.");
+           "translation (rt), or the inverse matrix. Without this key it is as the transform reads it.")
+      .only(EngineKind::kCycle, "choice of stored matrices");
   v.choice("invert", c.invert,
            "A stored matrix is inverted when the tree is built or at a visit. Without this key it is at a visit if the "
-           "matrix is stored forward.");
+           "matrix is stored forward.")
+      .only(EngineKind::kCycle, "choice of stored matrices");
 }
 
 }  // namespace config

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -112,9 +113,11 @@ namespace config {
 
 template <class V>
 void describe(V& v, BundlesConfig::Builder& c) {
-  v.field("open", c.open, IntRange{1, 1024}, "bundles", "The number of bundles that still take rays.");
+  v.field("open", c.open, IntRange{1, 1024}, "bundles", "The number of bundles that still take rays.")
+      .relax("bundles_open", Better::kTwice);
   v.field("rays_per_cycle", c.rays_per_cycle, IntRange{1, 1024}, "rays/cycle",
-          "The number of rays that the builder reads.");
+          "The number of rays that the builder reads.")
+      .relax("bundle_builder", Better::kTwice);
   v.field("age", c.age, IntRange{1, 1'000'000}, "rays",
           "After so many further rays an open bundle is sent on as it is.");
   v.choice("similarity", c.similarity, "The size of a bundle that must stay small when a ray joins.");
@@ -146,7 +149,8 @@ void describe(V& v, BundlesConfig& c) {
   v.field("size", c.size, IntRange{0, 64}, "rays",
           "The largest number of rays of a bundle. With 0 there are no bundles.");
   v.choice("form", c.form, "A bundle is tested by intervals of its rays or by the silhouette of the box.");
-  v.choice("edges", c.edges, "The edges of a silhouette are tested one after another or at once.");
+  v.choice("edges", c.edges, "The edges of a silhouette are tested one after another or at once.")
+      .only(EngineKind::kCycle, "clock for parallel edges", BundlesConfig::Edges::kParallel);
   v.choice("order", c.order, "The order of the two tests of a bundle: all rays hit the box, and any ray hits it.");
   v.field("strict", c.strict, "", "A bundle goes down whole only if each of its rays surely hits the box.");
   v.choice("lifetime", c.lifetime, "Bundles stay together from node to node, or are formed anew at each node.");

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -78,7 +79,8 @@ void describe(V& v, BvhConfig& c) {
       "Nodes hold their children's boxes as floats, or in 8 bits a plane, outward; these have 64 bytes up to a width "
       "of 6, and 80 above.");
   v.choice("leaves", c.leaves,
-           "Leaves hold three vertices for each triangle, or strips of triangles that share vertices.");
+           "Leaves hold three vertices for each triangle, or strips of triangles that share vertices.")
+      .only(EngineKind::kCycle, "simulated memory", BvhConfig::Leaves::kStrips);
   v.field(
       "top_triangles", c.top_triangles, IntRange{0, 16}, "triangles",
       "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "

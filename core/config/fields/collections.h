@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -92,27 +93,33 @@ void describe(V& v, CollectionsConfig& c) {
            "takes of the children that it hits the nearest one first, or the first one in the order of the node.");
   v.choice("key", c.key,
            "Rays gather at a node, or at a block of memory, with traversal: ordered: a packet then names the block, a "
-           "visit reads all of it, and each ray is tested with its own node there, which its owner keeps.");
+           "visit reads all of it, and each ray is tested with its own node there, which its owner keeps.")
+      .only(EngineKind::kCycle, "simulated memory", CollectionKey::kBlock);
   v.field("block_bytes", c.block_bytes, IntRange{64, 1 << 20}, "bytes",
           "The blocks of memory by which rays gather, with key: block. A node belongs to the block in which it "
           "begins.");
   v.choice("policy", c.policy, "The rule that chooses the collection that is tested next.");
   v.choice("select", c.select, "Full collections are tested first, or the policy alone decides.");
   v.choice(
-      "partial", c.partial,
-      "A collection that is not ready may go when its resource has nothing else to do (idle), already when the work "
-      "before it ends within a memory latency (ahead), or when it has waited for a time (after). The native engine, "
-      "which has no clock, takes ahead as idle.");
+       "partial", c.partial,
+       "A collection that is not ready may go when its resource has nothing else to do (idle), already when the work "
+       "before it ends within a memory latency (ahead), or when it has waited for a time (after). The native engine, "
+       "which has no clock, takes ahead as idle.")
+      .relax("issue_rule", c.partial == Partial::kAhead ? Partial::kIdle : Partial::kAhead, Relaxed{.times = 0})
+      .only(EngineKind::kCycle, "clock for collections that wait", Partial::kAfter);
   v.field("partial_after_cycles", c.partial_after_cycles, IntRange{1, 1'000'000'000}, "cycles",
           "The time that a collection waits to be filled, with partial: after.");
   v.field("sort_ids_per_cycle", c.sort_ids_per_cycle, IntRange{0, 1024}, "ray IDs/cycle",
           "The ray IDs that a resource sorts by what comes next, and appends to collections, in a cycle. 0: as many as "
-          "come.");
+          "come.")
+      .relax("sorting", Better::kTwice)
+      .only(EngineKind::kCycle, "clock for the sorting of ray IDs");
   v.choice("home", c.home, "The resource that keeps the collections of a packet's hits.");
   v.field("capacity", c.capacity, IntRange{1, 1 << 30}, "ray IDs per resource",
           "The storage for collections. A ray takes one of them with traversal: ordered; otherwise collections take "
           "blocks of packets.rays. Without this key it is made as large as the reserve of when_full needs for the "
-          "tree, if that is more than the default.");
+          "tree, if that is more than the default.")
+      .relax("collection_storage", Better::kTwice, Relaxed{.times = kStorageTimes});
   v.choice("when_full", c.when_full,
            "When the storage is full, a resource keeps a reserve and holds new rays back, or it spills to memory.");
 }

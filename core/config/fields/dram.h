@@ -41,13 +41,15 @@ void describe(V& v, DramConfig& c) {
   v.choice(
       "preset", c.preset,
       "The memory is a pipe of one bandwidth and latency, or has the channels, banks and times of a kind of DRAM.");
-  v.field("channels", c.channels, IntRange{1, 64}, "channels", "The number of channels.");
+  v.field("channels", c.channels, IntRange{1, 64}, "channels", "The number of channels.")
+      .relax("memory_bandwidth", Better::kTwice);
   v.field("interleave_bytes", c.interleave_bytes, IntRange{32, 65536}, "bytes",
           "The size of the blocks of memory that the channels hold in turn.");
   v.choice("mapping", c.mapping,
            "The order of an address's parts within a channel, from its highest bits to its lowest.");
   v.field("queue", c.queue, IntRange{1, 1024}, "requests",
-          "The number of reads, and likewise of writes, from which a channel chooses its next command.");
+          "The number of reads, and likewise of writes, from which a channel chooses its next command.")
+      .relax("dram_queue", Better::kTwice);
   v.field_or_auto("period_ps", c.period_ps, IntRange{100, 100'000}, "ps",
                   "The period of the DRAM's clock. With auto it is the preset's.");
   v.field("refresh", c.refresh, "", "The banks are refreshed.");

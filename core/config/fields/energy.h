@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/types/cost_table.h"
 
@@ -49,7 +50,8 @@ template <class V>
 void describe(V& v, EnergyConfig& c) {
   v.choice("profile", c.profile,
            "The process whose numbers energy and area have where they say auto: 45 nm with DDR3, or 7 nm with GDDR6. "
-           "With none neither is computed.");
+           "With none neither is computed.")
+      .only(EngineKind::kCycle, "count of joules", CostProfile::kN45, CostProfile::kN7);
   describe_costs(v, c.own, "energy");
 }
 

@@ -3,16 +3,10 @@
 #include <cstdint>
 #include <optional>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
-
-enum class EngineKind { kNative, kCycle };
-template <>
-inline constexpr auto kEnumNames<EngineKind> = [] {
-  using enum EngineKind;
-  return names<EngineKind>({{kNative, "native"}, {kCycle, "cycle"}});
-}();
 
 enum class EngineTransport { kLocal, kMpi };
 template <>

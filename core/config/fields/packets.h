@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -50,13 +51,16 @@ template <class V>
 void describe(V& v, PacketsConfig& c) {
   v.field("rays", c.rays, IntRange{1, 1024}, "rays", "The largest number of ray IDs that a packet carries.");
   v.choice("shapes", c.shapes, "A packet carries all shapes below one node, or a single one.");
-  v.choice("carry", c.carry, "A packet carries a reference to its shapes, or their data.");
-  v.choice("results", c.results, "The way in which hits travel back to the owner of the packet.");
+  v.choice("carry", c.carry, "A packet carries a reference to its shapes, or their data.")
+      .only(EngineKind::kCycle, "packets that carry data", PacketCarry::kData);
+  v.choice("results", c.results, "The way in which hits travel back to the owner of the packet.")
+      .only(EngineKind::kCycle, "wire on which results could travel otherwise");
   v.choice("made_per", c.made_per,
            "Rays gather at the node whose children they are tested against, or at each child of a node that they hit, "
            "which has a collection and packets of its own, with shapes: single.");
   v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "ray IDs/cycle",
-          "The number of a packet's ray IDs that a resource reads, to find its own rays or to gather hits.");
+          "The number of a packet's ray IDs that a resource reads, to find its own rays or to gather hits.")
+      .relax("dispatch", Better::kTwice);
 }
 
 }  // namespace config

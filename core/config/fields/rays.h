@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/config/fields/queue_kind.h"
 
@@ -36,22 +37,28 @@ namespace config {
 template <class V>
 void describe(V& v, RaysConfig& c) {
   v.field("slots_per_resource", c.slots_per_resource, IntRange{1, kMaxSlots}, "rays",
-          "The number of rays that a resource stores at a time.");
+          "The number of rays that a resource stores at a time.")
+      .relax("ray_slots", Better::kTwice, Relaxed{.times = kStorageTimes});
   v.choice("placement", c.placement, "The rule that chooses the resource of a new ray.");
   v.field("reads_per_cycle", c.reads_per_cycle, IntRange{0, 1024}, "records/cycle",
           "The number of rays or bundles whose data the testers of a resource read from its store. With 0 there is no "
-          "limit.");
+          "limit.")
+      .relax("ray_reads", Better::kTwice);
   v.field(
-      "banks", c.banks, IntRange{0, 256}, "banks",
-      "The banks of a resource's ray store, which hold its slots in turn. Each has a port to the box units and one to "
-      "the units for primitives, which read one record a cycle. With 0 rays.reads_per_cycle is the limit.");
+       "banks", c.banks, IntRange{0, 256}, "banks",
+       "The banks of a resource's ray store, which hold its slots in turn. Each has a port to the box units and one to "
+       "the units for primitives, which read one record a cycle. With 0 rays.reads_per_cycle is the limit.")
+      .relax("ray_banks", Better::kTwice)
+      .only(EngineKind::kCycle, "simulated ray memory");
   v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
   v.field("hits_per_ray", c.hits_per_ray, IntRange{1, 1 << 24}, "hits",
           "The largest number of hits of a ray with query: all. A ray with more ends the run with an error.");
   v.choice("queue", c.queue.kind,
-           "The queues that bring groups of new rays to the resources that issue them in the native engine.");
+           "The queues that bring groups of new rays to the resources that issue them in the native engine.")
+      .only(EngineKind::kNative, "real queues");
   v.field("queue_depth", c.queue.depth, IntRange{1, 65536}, "groups",
-          "The number of groups of new rays, of packets.rays each, that one of these queues holds.");
+          "The number of groups of new rays, of packets.rays each, that one of these queues holds.")
+      .only(EngineKind::kNative, "real queues");
 }
 
 }  // namespace config

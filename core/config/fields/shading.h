@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/config/fields/queue_kind.h"
 
@@ -63,11 +64,13 @@ template <class V>
 void describe(V& v, ShadingConfig& c) {
   v.field_or_auto("workers", c.workers, IntRange{1, 256}, "workers",
                   "The number of shader workers. With auto the cycle engine has two for each resource, and the native "
-                  "engine, where a worker is work for the host, two in all.");
+                  "engine, where a worker is work for the host, two in all.")
+      .relax("shading", Better::kTwice);
   v.effects("effects", c.effects,
             "The effects of light: those that the scene calls for (auto), all of them (nothing is specialised), or of "
             "those that the scene calls for only the named ones.");
-  v.field("idle_resources_shade", c.idle_resources_shade, "", "Idle resources help the shader workers.");
+  v.field("idle_resources_shade", c.idle_resources_shade, "", "Idle resources help the shader workers.")
+      .only(EngineKind::kCycle, "shading by idle resources", true);
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles",
           "The time to shade a ray that hit a plain surface or nothing.");
   v.field("cycles_per_lookup", c.cycles_per_lookup, IntRange{0, 1'000'000}, "cycles",
@@ -78,21 +81,29 @@ void describe(V& v, ShadingConfig& c) {
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
           "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader.");
   v.field(
-      "lanes", c.lanes, IntRange{1, 64}, "rays",
-      "The rays that a shader worker shades side by side as a vector. A vector takes its shaders one after another.");
+       "lanes", c.lanes, IntRange{1, 64}, "rays",
+       "The rays that a shader worker shades side by side as a vector. A vector takes its shaders one after another.")
+      .relax("shading_lanes", Better::kTwice, Relaxed{}, c.lanes > 1)
+      .only(EngineKind::kCycle, "vectors of a shader worker");
   v.choice("sort", c.sort,
            "A vector has the completed rays that have waited longest, or completed rays are sorted by shader and a "
-           "vector has rays of one.");
+           "vector has rays of one.")
+      .relax("shading_order", ShadingConfig::Sort::kShader, Relaxed{.times = 0}, c.lanes > 1)
+      .only(EngineKind::kCycle, "vectors of a shader worker", ShadingConfig::Sort::kShader);
   v.field("sort_rays_per_cycle", c.sort_rays_per_cycle, IntRange{1, 1024}, "rays/cycle",
-          "With sort: shader, the completed rays that are sorted in a cycle.");
+          "With sort: shader, the completed rays that are sorted in a cycle.")
+      .relax("shading_sorter", Better::kTwice);
   v.section("camera_rays", c.camera_rays, "The flags of camera rays.");
   v.section("bounce_rays", c.bounce_rays, "The flags of bounce rays.");
   v.section("shadow_rays", c.shadow_rays, "The flags of shadow rays.");
-  v.choice("distribute", c.distribute, "The rule that chooses the worker of a completed ray.");
+  v.choice("distribute", c.distribute, "The rule that chooses the worker of a completed ray.")
+      .only(EngineKind::kCycle, "choice of shader workers");
   v.choice("queue", c.queue.kind,
-           "The queue that brings completed rays from the resources to the shader workers in the native engine.");
+           "The queue that brings completed rays from the resources to the shader workers in the native engine.")
+      .only(EngineKind::kNative, "real queues");
   v.field("queue_depth", c.queue.depth, IntRange{1, 65536}, "batches",
-          "The number of batches of completed rays, of some hundred each, that this queue holds.");
+          "The number of batches of completed rays, of some hundred each, that this queue holds.")
+      .only(EngineKind::kNative, "real queues");
 }
 
 }  // namespace config

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/types/unit_kind.h"
 
@@ -79,13 +80,15 @@ template <class V>
 void describe(V& v, TesterUnits& c) {
   v.field("units", c.units, IntRange{1, 1024}, "units", "The number of units of this kind in a resource.");
   v.field("interval_cycles", c.interval_cycles, kCycles, "cycles", "The time between two tests that a unit starts.");
-  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "The time from the start of a test to its result.");
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "The time from the start of a test to its result.")
+      .relax("test_latency", Better::kHalf, Relaxed{.times = 0});
 }
 
 template <class V>
 void describe(V& v, TestersConfig::Simd& c) {
   v.field("lanes", c.lanes, IntRange{1, 64}, "lanes",
-          "The number of tests that a unit starts side by side. With 1 it starts each test by itself.");
+          "The number of tests that a unit starts side by side. With 1 it starts each test by itself.")
+      .relax("cells", Better::kTwice);
   v.choice("map", c.map, "The lanes hold rays that are tested against one shape, or shapes tested against one ray.");
   v.field(
       "reformat_cycles", c.reformat_cycles, IntRange{0, 1000}, "cycles",
@@ -96,39 +99,51 @@ template <class V>
 void describe(V& v, TestersConfig::Distributor& c) {
   v.field("testers", c.testers, IntRange{1, 1024}, "testers",
           "The number of testers. Each has the units of `testers`, tests one ray at a time, and has its share of ray "
-          "memory: the slots that are equal modulo this number.");
+          "memory: the slots that are equal modulo this number.")
+      .relax("distributed_testers", Better::kTwice);
   v.field("ids_per_cycle", c.ids_per_cycle, IntRange{1, 1024}, "IDs/cycle",
-          "The ray IDs that the distributor hands to the testers.");
-  v.field("queue", c.queue, IntRange{1, 1024}, "IDs", "The number of ray IDs that wait at a tester.");
+          "The ray IDs that the distributor hands to the testers.")
+      .relax("handing_out", Better::kTwice);
+  v.field("queue", c.queue, IntRange{1, 1024}, "IDs", "The number of ray IDs that wait at a tester.")
+      .relax("tester_queues", Better::kTwice);
   v.field(
-      "out_of_order", c.out_of_order, IntRange{0, 63}, "packets",
-      "The number of packets that testers may begin while an older one has not been tested. With 0 testers that are "
-      "done with a packet stand still until all are.");
+       "out_of_order", c.out_of_order, IntRange{0, 63}, "packets",
+       "The number of packets that testers may begin while an older one has not been tested. With 0 testers that are "
+       "done with a packet stand still until all are.")
+      .relax("out_of_order", Better::kTwiceOrOne);
   v.choice("stragglers", c.stragglers,
-           "The results of a packet go on together when the last is there, or each when it is there.");
+           "The results of a packet go on together when the last is there, or each when it is there.")
+      .relax("stragglers", TestersConfig::Distributor::Stragglers::kForward, Relaxed{.times = 0});
   v.field("results_per_cycle", c.results_per_cycle, IntRange{1, 1024}, "results/cycle",
-          "The results that the decision point takes from the testers, those of older packets first.");
+          "The results that the decision point takes from the testers, those of older packets first.")
+      .relax("decision_point", Better::kTwice);
   v.field("results", c.results, IntRange{1, 1024}, "results",
-          "The number of results of a tester that wait for the decision point.");
+          "The number of results of a tester that wait for the decision point.")
+      .relax("tester_queues", Better::kTwice);
 }
 
 template <class V>
 void describe(V& v, TestersConfig& c) {
-  for (const UnitKindRow& row : kUnitKinds) v.section_or_number(row.key, c.units[row.kind], row.meaning);
+  for (const UnitKindRow& row : kUnitKinds)
+    v.section_or_number(row.key, c.units[row.kind], row.meaning).relax(row.work, Better::kTwice, Relaxed{.times = 0});
   v.section("simd", c.simd, "The lanes of the units.");
   v.section("distributor", c.distributor, "Testers behind a distributor, with topology.form: distributor.");
-  v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.");
+  v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.")
+      .relax("contexts", Better::kTwice);
   v.field("window", c.window, IntRange{1, 64}, "packets",
           "The number of packets at the front of a resource's input queue among which it takes the first that can go "
-          "on and whose shapes are there.");
+          "on and whose shapes are there.")
+      .only(EngineKind::kCycle, "choice among packets that have arrived");
   v.choice("own_rays", c.own_rays,
            "The issuer of a packet tests its own rays before the packet leaves, or after it has come back.");
   v.choice("any_hit", c.any_hit,
-           "The unit that meets a non-opaque primitive decides at once if it is hit, or a shader worker decides.");
+           "The unit that meets a non-opaque primitive decides at once if it is hit, or a shader worker decides.")
+      .only(EngineKind::kCycle, "any-hit calls by shader workers", TestersConfig::AnyHit::kShader);
   v.choice(
-      "bundle_blocks", c.bundle_blocks,
-      "A bundle unit does one test of a bundle at a time; or it is a pair of blocks that does both tests of a box at "
-      "once, with bundles.order: parallel; or the box units test bundles as well.");
+       "bundle_blocks", c.bundle_blocks,
+       "A bundle unit does one test of a bundle at a time; or it is a pair of blocks that does both tests of a box at "
+       "once, with bundles.order: parallel; or the box units test bundles as well.")
+      .only(EngineKind::kCycle, "clock for bundle units");
 }
 
 }  // namespace config

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/config/fields/queue_kind.h"
 #include "core/config/fields/testers.h"
@@ -107,10 +108,14 @@ namespace config {
 
 template <class V>
 void describe(V& v, LinkConfig& c) {
-  v.choice("queue", c.queue, "The queue that carries a link in the native engine.");
-  v.field("depth", c.depth, IntRange{1, 65536}, "packets", "The number of packets that a link holds.");
-  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "The time that a packet takes over a link.");
-  v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle", "The width of a link.");
+  v.choice("queue", c.queue, "The queue that carries a link in the native engine.")
+      .only(EngineKind::kNative, "real queues");
+  v.field("depth", c.depth, IntRange{1, 65536}, "packets", "The number of packets that a link holds.")
+      .relax("packets_in_flight", Better::kTwice);
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles", "The time that a packet takes over a link.")
+      .relax("link_latency", Better::kHalf);
+  v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle", "The width of a link.")
+      .relax("link_bandwidth", Better::kTwice);
 }
 
 template <class V>
@@ -122,8 +127,13 @@ void describe(V& v, ResourceOverride& c) {
 template <class V>
 void describe(V& v, TopologyConfig& c) {
   v.field("resources", c.resources, IntRange{1, kMaxResources}, "resources", "The number of compute resources.");
-  v.choice("shape", c.shape, "The network that links the resources.");
-  v.field("rings", c.rings, IntRange{1, 64}, "rings", "The number of rings of a multi_ring.");
+  v.choice("shape", c.shape, "The network that links the resources.")
+      .relax("ring_directions", TopologyShape::kBidirectional, Relaxed{.times = 0},
+             c.shape == TopologyShape::kRing && c.resources > 1)
+      .only(EngineKind::kCycle, "", TopologyShape::kMultiRing, TopologyShape::kHierarchical, TopologyShape::kBus,
+            TopologyShape::kIndependent, TopologyShape::kCentral);
+  v.field("rings", c.rings, IntRange{1, 64}, "rings", "The number of rings of a multi_ring.")
+      .relax("rings", Better::kTwice, Relaxed{.times = 0});
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");
   v.choice("form", c.form,
            "The form of a central machine: test cells (testers.simd.lanes), each for the rays of its places in ray "

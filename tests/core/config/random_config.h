@@ -7,7 +7,7 @@
 namespace carousel {
 
 /// A visitor that gives every field a value inside its range, often one of the ends.
-class RandomFiller {
+class RandomFiller : public config::RowVisitor<RandomFiller> {
  public:
   explicit RandomFiller(std::uint64_t seed) : random_(seed) {}
 
@@ -16,7 +16,7 @@ class RandomFiller {
     config::describe(*this, value);
   }
 
-  void field(std::string_view, std::int64_t& value, config::IntRange range, const char*, const char*) {
+  void on_field(std::string_view, std::int64_t& value, config::IntRange range, const char*, const char*) {
     switch (pick(4)) {
       case 0:
         value = range.min;
@@ -28,17 +28,17 @@ class RandomFiller {
         value = std::uniform_int_distribution<std::int64_t>(range.min, range.max)(random_);
     }
   }
-  void field(std::string_view, float& value, config::RealRange range, const char*, const char*) {
+  void on_field(std::string_view, float& value, config::RealRange range, const char*, const char*) {
     value = static_cast<float>(real(range));
   }
-  void field(std::string_view, double& value, config::RealRange range, const char*, const char*) {
+  void on_field(std::string_view, double& value, config::RealRange range, const char*, const char*) {
     value = real(range);
   }
-  void field(std::string_view, Vec3& value, config::RealRange range, const char*, const char*) {
+  void on_field(std::string_view, Vec3& value, config::RealRange range, const char*, const char*) {
     for (int axis = 0; axis < 3; ++axis) value[axis] = static_cast<float>(real(range));
   }
-  void field(std::string_view, bool& value, const char*, const char*) { value = pick(2) == 1; }
-  void field(std::string_view, std::string& value, const char*, const char*) {
+  void on_field(std::string_view, bool& value, const char*, const char*) { value = pick(2) == 1; }
+  void on_field(std::string_view, std::string& value, const char*, const char*) {
     static const char* const kTexts[] = {"a.glb",
                                          "true",
                                          "12",
@@ -55,22 +55,22 @@ class RandomFiller {
                                          " "};
     value = kTexts[pick(std::size(kTexts))];
   }
-  void field_or_auto(std::string_view, std::optional<std::int64_t>& value, config::IntRange range, const char*,
-                     const char*) {
+  void on_field_or_auto(std::string_view, std::optional<std::int64_t>& value, config::IntRange range, const char*,
+                        const char*) {
     value.reset();
     if (pick(2) == 1) field("", value.emplace(), range, "", "");
   }
   template <class T>
-  void field_or_auto(std::string_view, std::optional<T>& value, config::RealRange range, const char*, const char*) {
+  void on_field_or_auto(std::string_view, std::optional<T>& value, config::RealRange range, const char*, const char*) {
     value.reset();
     if (pick(2) == 1) field("", value.emplace(), range, "", "");
   }
   template <class E>
-  void choice(std::string_view, E& value, const char*) {
+  void on_choice(std::string_view, E& value, const char*) {
     value = kEnumNames<E>[pick(kEnumNames<E>.size())].value;
   }
   template <class E>
-  void choice(std::string_view, std::optional<E>& value, const char*) {
+  void on_choice(std::string_view, std::optional<E>& value, const char*) {
     value.reset();
     if (pick(2) == 1) choice("", value.emplace(), "");
   }
@@ -83,7 +83,7 @@ class RandomFiller {
     value.reset();
     if (pick(2) == 1) fill(value.emplace());
   }
-  void section_or_number(std::string_view, TesterUnits& value, const char*) { fill(value); }
+  void on_section_or_number(std::string_view, TesterUnits& value, const char*) { fill(value); }
   template <class T>
   void list(std::string_view, std::vector<T>& value, const char*) {
     value.resize(pick(3));

@@ -109,7 +109,7 @@ TEST(PlaneUnits, AreLiftedWhereThereAreAny) {
   Config config;
   const auto has = [&] {
     const std::vector<WhatIf> all = what_ifs(config, scene.accel(config.bvh, config.cull_planes, config.accuracy));
-    return std::any_of(all.begin(), all.end(), [](const WhatIf& what_if) { return what_if.name == "plane_tests"; });
+    return std::any_of(all.begin(), all.end(), [](const WhatIf& what_if) { return what_if.name() == "plane_tests"; });
   };
   EXPECT_FALSE(has());
   config.cull_planes.count = 1;

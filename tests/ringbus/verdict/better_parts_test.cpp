@@ -40,7 +40,7 @@ TEST(BetterParts, CostNoTime) {
     // Another rule is no better part; nor is the first place of an issue queue that looks ahead where there was none,
     // which lets collections out that would have filled (seed 2 of one draw: +60 %).
     std::erase_if(all, [&](const WhatIf& what_if) {
-      return what_if.name == "issue_rule" || (what_if.name == "fetch_ahead" && cell.config.memory.fetch_ahead == 0);
+      return what_if.name() == "issue_rule" || (what_if.name() == "fetch_ahead" && cell.config.memory.fetch_ahead == 0);
     });
     std::shuffle(all.begin(), all.end(), random);
     all.resize(std::min<std::size_t>(all.size(), 5));
@@ -48,16 +48,16 @@ TEST(BetterParts, CostNoTime) {
       Cell better = cell;
       better.config = what_if.relaxed;
       const Outcome out = run_cell(scene, better);
-      ASSERT_EQ(out.fault, "") << what_if.name << ": " << better.text();
+      ASSERT_EQ(out.fault, "") << what_if.name() << ": " << better.text();
       const double change =
           static_cast<double>(out.result.cycle->cycles) / static_cast<double>(base.result.cycle->cycles) - 1;
-      auto& [sum, number] = longer[what_if.name];
+      auto& [sum, number] = longer[what_if.name()];
       sum += change;
       ++number;
       ++runs;
       anomalies += change > 0;
       worst = std::max(worst, change);
-      EXPECT_LE(change, kMostLonger) << "seed " << seed << ", " << what_if.name << ": " << cell.text();
+      EXPECT_LE(change, kMostLonger) << "seed " << seed << ", " << what_if.name() << ": " << cell.text();
     }
   }
   std::string table = fmt::format("{} of {} runs took longer, the worst {:+.1f} %", anomalies, runs, 100 * worst);

@@ -128,7 +128,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
       config.collections.capacity = minimum_capacity(config, accel.width, accel.max_depth);
     const std::vector<WhatIf> all = what_ifs(config, accel);
     const auto what_if =
-        std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == plant.name; });
+        std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name() == plant.name; });
     ASSERT_NE(what_if, all.end()) << plant.name;
     const Cycle before = run_whole(scene, config).cycle->cycles,
                 after = run_whole(scene, what_if->relaxed).cycle->cycles;
@@ -140,7 +140,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
 TEST(WhatIf, LiftsWhatTheMachineHas) {
   const auto has = [](const Config& config, const std::string& name) {
     const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
-    return std::any_of(all.begin(), all.end(), [&](const WhatIf& what_if) { return what_if.name == name; });
+    return std::any_of(all.begin(), all.end(), [&](const WhatIf& what_if) { return what_if.name() == name; });
   };
   Config c = generous_machine();
   c.topology.link.latency_cycles = 4;
@@ -161,10 +161,10 @@ TEST(WhatIf, SaysWhatToSet) {
   const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
   std::set<std::string> names;
   for (const WhatIf& what_if : all) {
-    names.insert(what_if.name);
-    ASSERT_FALSE(what_if.sets.empty()) << what_if.name;
+    names.insert(what_if.name());
+    ASSERT_FALSE(what_if.sets.empty()) << what_if.name();
     EXPECT_EQ(resolved_yaml(load_config({text, "a.yaml"}, what_if.sets).config), resolved_yaml(what_if.relaxed))
-        << what_if.name;
+        << what_if.name();
   }
   EXPECT_TRUE(names.contains("shading"));
   EXPECT_TRUE(names.contains("box_tests"));
@@ -183,7 +183,7 @@ TEST(WhatIf, DoublesTheUnitsOfEachKind) {
   const SceneFacts scene = scene_facts(accel);
   const std::vector<WhatIf> all = what_ifs(c, accel);
   for (const UnitKindRow& row : kUnitKinds) {
-    const auto found = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name == row.work; });
+    const auto found = std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name() == row.work; });
     ASSERT_EQ(found != all.end(), has_units(c, scene, row.kind)) << row.work;
     if (found == all.end()) continue;
     const Config& relaxed = found->relaxed;

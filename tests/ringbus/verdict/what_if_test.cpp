@@ -149,7 +149,8 @@ TEST(WhatIf, PredictsRandomMachines) {
     double best = 0, named = 0;
     for (const Gain& gain : found.gains) {
       if (gain.high < 0.05) continue;
-      const auto what_if = std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name == gain.name; });
+      const auto what_if =
+          std::find_if(all.begin(), all.end(), [&](const auto& one) { return one.name() == gain.name; });
       const double cycles = static_cast<double>(run_whole(scene, what_if->relaxed).cycle->cycles);
       const double real = static_cast<double>(run.cycle->cycles) / cycles - 1;
       best = std::max(best, real);

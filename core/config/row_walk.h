@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/config.h"
+
+namespace carousel::config {
+
+/// The base of a visitor V that asks for what rows say beyond their values: V::rest(path, value) returns what such a
+/// row goes on with, for the value of a key and its path. The testers of resources that differ have the paths of those
+/// of the whole machine; in_override() tells them apart.
+template <class V>
+class RowWalk {
+ public:
+  template <class T, class... Args>
+  auto field(std::string_view key, T& value, const Args&...) {
+    return self().rest(path_of(key), value);
+  }
+  template <class T, class... Args>
+  auto field_or_auto(std::string_view key, std::optional<T>& value, const Args&...) {
+    return self().rest(path_of(key), value);
+  }
+  template <class T>
+  auto choice(std::string_view key, T& value, const char*) {
+    return self().rest(path_of(key), value);
+  }
+  auto section_or_number(std::string_view key, TesterUnits& value, const char* meaning) {
+    section(key, value, meaning);
+    return self().rest(path_of(key) + ".units", value.units);
+  }
+  template <class T>
+  void section(std::string_view key, T& value, const char*) {
+    const std::size_t before = path_.size();
+    path_ = path_of(key);
+    describe(self(), value);
+    path_.resize(before);
+  }
+  template <class T>
+  void section(std::string_view key, std::optional<T>& value, const char* meaning) {
+    if (value) section(key, *value, meaning);
+  }
+  template <class T>
+  void list(std::string_view, std::vector<T>& value, const char*) {
+    const std::string before = std::exchange(path_, "");
+    in_override_ = true;
+    for (T& item : value) describe(self(), item);
+    in_override_ = false;
+    path_ = before;
+  }
+  void effects(std::string_view, ShadingConfig::Effects&, const char*) {}
+  void workload(std::string_view, WorkloadConfig&, const char*) {}
+  void vary(std::string_view, std::map<std::string, std::vector<std::string>>&, const char*) {}
+
+ protected:
+  bool in_override() const { return in_override_; }
+
+ private:
+  V& self() { return static_cast<V&>(*this); }
+  std::string path_of(std::string_view key) const {
+    return path_.empty() ? std::string(key) : path_ + "." + std::string(key);
+  }
+
+  std::string path_;
+  bool in_override_ = false;
+};
+
+}  // namespace carousel::config
