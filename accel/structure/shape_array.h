@@ -28,6 +28,7 @@ class ShapeArray {
   ShapeArray() = default;
   ShapeArray(ShapeArray&& other) noexcept { *this = std::move(other); }
   ShapeArray& operator=(ShapeArray&& other) noexcept {
+    if (this == &other) return *this;
     dense_ = std::move(other.dense_);
     sparse_ = std::move(other.sparse_);
     gaps_ = std::move(other.gaps_);
@@ -39,8 +40,7 @@ class ShapeArray {
   /// Preconditions: no gaps.
   ShapeArray(const ShapeArray& other) : dense_(other.dense_) { sync(); }
   ShapeArray& operator=(const ShapeArray& other) {
-    dense_ = other.dense_;
-    sync();
+    if (this != &other) *this = ShapeArray(other);  // leaves nothing of gaps that were here
     return *this;
   }
 
@@ -112,7 +112,6 @@ class ShapeArray {
     size_ += count;
     filled_ = std::max(filled_, size_);
   }
-  bool has_gaps() const { return !gaps_.empty(); }
   std::vector<Part> parts() const {
     std::vector<Part> out;
     std::size_t begin = 0;
