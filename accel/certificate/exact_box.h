@@ -33,8 +33,6 @@ class ExactBox {
   bool hit() const { return !beside_ && (endless_ || !less(far_, near_)); }
   /// The exact entry, rounded; never below tmin.
   double entry() const { return std::ldexp(big_quotient(near_.top, near_.bottom), -kScale); }
-  /// Sign of the exact entry - x.
-  int compare_entry(float x) const { return Int(near_.top - integer(x) * near_.bottom).sign(); }
 
  private:
   using Int = boost::multiprecision::cpp_int;

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cmath>
-
 #include "core/types/vec.h"
 
 namespace carousel::accel {
@@ -22,16 +20,6 @@ inline Vec3 folded_translation(const DMat3& inverse, const Vec3& translation) {
   Vec3 out;
   for (int row = 0; row < 3; ++row)
     out[row] = inverse[0][row] * p.x + inverse[1][row] * p.y + inverse[2][row] * p.z + folded[row];
-  return out;
-}
-
-/// As inverse_matrix(), but with fused multiply-adds that start from the translation: the fairest the traditional form
-/// can be made. For tables and tests; the kernels never fuse (docs/design.md, One arithmetic).
-inline Vec3 inverse_matrix_fma(const Mat3& inverse, const Vec3& folded, const Vec3& p) {
-  Vec3 out;
-  for (int row = 0; row < 3; ++row)
-    out[row] =
-        std::fma(inverse[2][row], p.z, std::fma(inverse[1][row], p.y, std::fma(inverse[0][row], p.x, folded[row])));
   return out;
 }
 

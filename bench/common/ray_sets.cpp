@@ -96,7 +96,7 @@ std::vector<std::uint32_t> random_order(std::size_t count, std::uint64_t seed) {
   std::vector<std::uint32_t> order(count);
   std::iota(order.begin(), order.end(), 0u);
   for (std::size_t i = count; i > 1; --i) {
-    const std::uint32_t word = random_word({.seed = seed, .pixel = static_cast<std::uint32_t>(i)}, 4);
+    const std::uint32_t word = random_block({.seed = seed, .pixel = static_cast<std::uint32_t>(i)}, 1)[0];
     std::swap(order[i - 1], order[static_cast<std::size_t>((std::uint64_t{word} * i) >> 32)]);
   }
   return order;

@@ -98,7 +98,6 @@ class Reader : public RowVisitor<Reader> {
   bool is_auto(std::string_view key) const;
   void vector(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* expected);
   std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
-  void read_override(const Node& node, ResourceOverride& value);
   void report_unknown(const Scope& frame);
   void wrong(const Node& node, const std::string& expected, const std::string& hint = "");
   std::string path() const;

@@ -44,9 +44,4 @@ constexpr PhiloxCounter random_block(const RandomKey& key, std::uint32_t block) 
                     {std::uint32_t(key.seed), std::uint32_t(key.seed >> 32)});
 }
 
-/// The word of one dimension.
-constexpr std::uint32_t random_word(const RandomKey& key, std::uint32_t dimension) {
-  return random_block(key, dimension / 4)[dimension % 4];
-}
-
 }  // namespace carousel

@@ -25,11 +25,6 @@ class FollowedRay {
   /// It is over, or never came; its tag may be used again.
   void forget() { tag_.store(0, std::memory_order_relaxed); }
   bool is(const RayTag& tag) const { return tag_.load(std::memory_order_relaxed) == bits(tag); }
-  bool is_named() const { return tag_.load(std::memory_order_relaxed) != 0; }
-  bool is_named_on(std::uint32_t path) const {
-    const std::uint64_t tag = tag_.load(std::memory_order_relaxed);
-    return tag != 0 && (tag >> 24 & 0xffffffffu) == path;
-  }
 
   /// It has got a slot, or has left it.
   void place(RayId id) { id_.store(std::uint64_t{1} << 32 | id.bits, std::memory_order_relaxed); }
@@ -65,7 +60,6 @@ struct RayFact {
     kDone,      ///< `resource` handed it over with `hit`
     kTaken,     ///< shading received it
     kShaded,    ///< a worker shaded it, from `at` to `end`
-    kCaused,    ///< ray `tag` came of it
   };
   Kind kind = Kind::kMade;
   std::uint64_t at = 0, end = 0;

@@ -3,7 +3,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <string_view>
 
 namespace carousel::ringbus::stress {
@@ -48,11 +47,6 @@ constexpr std::string_view pattern_name(Pattern pattern) {
   for (const PatternName& entry : kPatterns)
     if (entry.pattern == pattern) return entry.name;
   return {};
-}
-constexpr std::optional<Pattern> pattern_of(std::string_view name) {
-  for (const PatternName& entry : kPatterns)
-    if (entry.name == name) return entry.pattern;
-  return std::nullopt;
 }
 
 }  // namespace carousel::ringbus::stress

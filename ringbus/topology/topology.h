@@ -87,10 +87,6 @@ class Topology {
   }
   /// Tells whether a packet that has reached the group's bridge has anything to do in the group, its owner included.
   bool group_wants(const Packet& packet, std::uint32_t group) const;
-  /// Tells whether the packet has to be looked into at `here`; otherwise it passes.
-  bool handles(const Packet& packet, ResourceId here) const {
-    return visit_all_ ? packet.kind != PacketKind::kMemberships || here == packet.home : wanted(packet, here);
-  }
   /// Resources other than its owner that have rays of a test packet.
   std::uint32_t other_owners(const Packet& packet) const {
     std::uint32_t others = 0;

@@ -22,11 +22,6 @@ class PathPool {
   /// that absorb light.
   PathPool(std::size_t states, std::uint64_t paths, std::size_t shadow_slots, bool media);
 
-  /// Memory a state takes, for estimates.
-  static constexpr std::size_t bytes_per_state(std::size_t shadow_slots, bool media) {
-    return sizeof(PathState) + shadow_slots * sizeof(Vec3) + (media ? sizeof(VolumeStack) : 0) + sizeof(std::uint32_t);
-  }
-
   /// Limits the number of paths that are traced. Call it before the first admission.
   void set_paths(std::uint64_t paths) { paths_ = paths; }
 

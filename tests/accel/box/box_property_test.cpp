@@ -10,6 +10,7 @@
 #include "accel/certificate/box_cases.h"
 #include "accel/certificate/exact_box.h"
 #include "tests/accel/box/box_levels.h"
+#include "tests/accel/box/exact_entry.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/traverse/test_rays.h"
 #include "tests/support/random_runs.h"
@@ -48,9 +49,9 @@ MissCount missed_boxes(int reach, int pace, std::uint64_t number) {
       if (level.value != BoxLevel::kDouble || !answer.hit || !(answer.entry < std::numeric_limits<float>::max()))
         continue;
       // Rounded up, but no further than a float and the double's own error.
-      count.off += exact.compare_entry(up(answer.entry)) > 0;
-      count.early += exact.compare_entry(answer.entry) > 0;
-      count.off += answer.entry > 0 && exact.compare_entry(down(down(answer.entry))) < 0;
+      count.off += compare_entry(c.ray, c.box, up(answer.entry)) > 0;
+      count.early += compare_entry(c.ray, c.box, answer.entry) > 0;
+      count.off += answer.entry > 0 && compare_entry(c.ray, c.box, down(down(answer.entry))) < 0;
     }
   }
   std::cout << cases << " cases, " << count.exact << " boxes met: plain misses " << count.missed[0] << ", conservative "

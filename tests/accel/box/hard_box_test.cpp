@@ -6,6 +6,7 @@
 
 #include "accel/certificate/exact_box.h"
 #include "tests/accel/box/box_levels.h"
+#include "tests/accel/box/exact_entry.h"
 
 namespace carousel::accel {
 namespace {
@@ -31,7 +32,7 @@ float next_down(float x) {
 void expect_hit(const Ray& r, const Aabb& box, float entry, float tmax = kInfinity) {
   const ExactBox exact(r, box, tmax);
   EXPECT_TRUE(exact.hit());
-  EXPECT_EQ(exact.compare_entry(entry), 0);
+  EXPECT_EQ(compare_entry(r, box, entry), 0);
   for (const auto& level : kEnumNames<BoxLevel>) {
     const BoxAnswer answer = box_answer_everywhere(level.value, r, box, tmax);
     EXPECT_TRUE(answer.hit) << level.name;

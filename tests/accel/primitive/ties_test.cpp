@@ -4,11 +4,11 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/traverse/brute_force.h"
 #include "accel/traverse/kernels.h"
 #include "accel/traverse/ray_check.h"
 #include "accel/traverse/verifying_workload.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/brute_force.h"
 #include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "accel/traverse/brute_force.h"
 #include "accel/traverse/verifying_workload.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/brute_force.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <string>
 #include <vector>
@@ -10,6 +11,16 @@
 #include "tests/support/publish.h"
 
 namespace carousel::accel {
+
+/// The traditional form with fused multiply-adds that start from the translation: the fairest it can be made. The
+/// kernels never fuse (docs/design.md, One arithmetic).
+inline Vec3 inverse_matrix_fma(const Mat3& inverse, const Vec3& folded, const Vec3& p) {
+  Vec3 out;
+  for (int row = 0; row < 3; ++row)
+    out[row] =
+        std::fma(inverse[2][row], p.z, std::fma(inverse[1][row], p.y, std::fma(inverse[0][row], p.x, folded[row])));
+  return out;
+}
 
 /// A way to bring a point into the model's space.
 struct TransformMethod {

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 
 #include "accel/box/slab.h"
-#include "accel/traverse/brute_force.h"
 #include "accel/traverse/verifying_workload.h"
 #include "core/config/config.h"
 #include "core/types/enum_names.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/brute_force.h"
 #include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {

@@ -2,9 +2,9 @@
 
 #include <cstddef>
 
-#include "accel/traverse/brute_force.h"
 #include "accel/traverse/reference_tracer.h"
 #include "accel/traverse/verifying_workload.h"
+#include "tests/accel/traverse/brute_force.h"
 
 namespace carousel::accel {
 

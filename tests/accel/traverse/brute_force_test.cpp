@@ -1,5 +1,5 @@
 // The depth-first tracer against every triangle tested in scalar code: bits equal, over tree shapes and targets.
-#include "accel/traverse/brute_force.h"
+#include "tests/accel/traverse/brute_force.h"
 
 #include <gtest/gtest.h>
 

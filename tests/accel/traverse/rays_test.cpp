@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "accel/traverse/brute_force.h"
 #include "accel/traverse/ray_check.h"
 #include "tests/accel/structure/test_scenes.h"
+#include "tests/accel/traverse/brute_force.h"
 #include "tests/accel/traverse/test_rays.h"
 
 namespace carousel::accel {

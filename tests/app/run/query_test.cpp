@@ -13,10 +13,10 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "accel/traverse/brute_force.h"
 #include "core/types/enum_names.h"
 #include "report/csv/ray_csv.h"
 #include "scene/builtin/builtin.h"
+#include "tests/accel/traverse/brute_force.h"
 #include "tests/app/support/program.h"
 
 namespace carousel::query_test {

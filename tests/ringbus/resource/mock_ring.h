@@ -7,13 +7,13 @@
 
 #include "accel/builders/build.h"
 #include "accel/structure/accel.h"
-#include "accel/traverse/brute_force.h"
 #include "core/system/executor.h"
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/protocol/deadlock.h"
 #include "ringbus/resource/resource.h"
 #include "ringbus/topology/topology.h"
 #include "scene/builtin/builtin.h"
+#include "tests/accel/traverse/brute_force.h"
 
 namespace carousel::ringbus {
 

@@ -30,6 +30,12 @@ Packet packet(std::uint32_t owner, std::initializer_list<std::uint32_t> owners, 
   return p;
 }
 
+/// True if the packet has work at `here`; otherwise it passes.
+bool handles(const Topology& topology, const Packet& p, ResourceId here) {
+  if (topology.visits_all()) return p.kind != PacketKind::kMemberships || here == p.home;
+  return topology.wanted(p, here);
+}
+
 /// Follows the packet from its owner until it is back; who handles it on the way, in order.
 std::vector<std::uint32_t> route(const Topology& topology, const Packet& p,
                                  std::vector<std::uint32_t>* through = nullptr) {
@@ -39,7 +45,7 @@ std::vector<std::uint32_t> route(const Topology& topology, const Packet& p,
     at = topology.next(p, at);
     if (at == p.owner) return handled;
     if (through != nullptr) through->push_back(at.value);
-    if (topology.handles(p, at)) handled.push_back(at.value);
+    if (handles(topology, p, at)) handled.push_back(at.value);
   }
   ADD_FAILURE() << "never came home";
   return handled;

@@ -1,16 +1,25 @@
-#include "accel/traverse/brute_force.h"
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
 
 #include "accel/traverse/oracle_primitive.h"
 #include "accel/traverse/ray_check.h"
+#include "core/config/config.h"
+#include "core/types/any_hit.h"
+#include "core/types/ray.h"
+#include "core/types/workload.h"
+#include "scene/model/scene.h"
 
 namespace carousel::accel {
 
-namespace {
-
-/// Gives each hit of the ray to `take`; instances and primitives in rising order.
+/// Gives each hit of the ray to `take`; instances and primitives in rising order. Every primitive of every instance is
+/// tested as accel/traverse/oracle_primitive.h does. Non-opaque materials call `any_hit`, unless it is null. Slow; for
+/// small scenes.
 template <class Take>
-void every_hit(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
-               const AnyHit* any_hit, const Take& take) {
+void brute_force_each(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
+                      const AnyHit* any_hit, const Take& take) {
   if (!valid(request.ray)) return;
   OraclePrimitives oracle(scene, accuracy, any_hit);
   const OracleBoxTest boxes(request.ray, accuracy.box);
@@ -32,22 +41,22 @@ void every_hit(const scene::Scene& scene, const RayRequest& request, const Accur
   }
 }
 
-}  // namespace
-
-Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
-                const AnyHit* any_hit) {
+/// The closest hit.
+inline Hit brute_force(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy = {},
+                       const AnyHit* any_hit = nullptr) {
   Hit best;
   // The first of two hits at one distance stays.
-  every_hit(scene, request, accuracy, any_hit, [&](const Hit& hit) {
+  brute_force_each(scene, request, accuracy, any_hit, [&](const Hit& hit) {
     if (hit.t < best.t || !best.valid()) best = hit;
   });
   return best;
 }
 
-std::vector<Hit> brute_force_all(const scene::Scene& scene, const RayRequest& request, const AccuracyConfig& accuracy,
-                                 const AnyHit* any_hit) {
+/// All hits, in no order.
+inline std::vector<Hit> brute_force_all(const scene::Scene& scene, const RayRequest& request,
+                                        const AccuracyConfig& accuracy = {}, const AnyHit* any_hit = nullptr) {
   std::vector<Hit> all;
-  every_hit(scene, request, accuracy, any_hit, [&](const Hit& hit) { all.push_back(hit); });
+  brute_force_each(scene, request, accuracy, any_hit, [&](const Hit& hit) { all.push_back(hit); });
   return all;
 }
 
