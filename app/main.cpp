@@ -9,7 +9,7 @@ namespace {
 void before_libraries() {
   carousel::app::explain_starvation();
 }
-[[gnu::section(".preinit_array"), gnu::used]] void (*const g_before_libraries)() = before_libraries;
+[[gnu::section(".preinit_array"), gnu::used]] void (*const kBeforeLibraries)() = before_libraries;
 
 }  // namespace
 

@@ -18,7 +18,7 @@ namespace {
 std::filesystem::path find_file(const std::string& name, const std::filesystem::path& config_dir) {
   namespace fs = std::filesystem;
   std::error_code ignored;
-  const fs::path beside = config_dir / name;
+  fs::path beside = config_dir / name;
   if (fs::is_regular_file(beside, ignored)) return beside;
   if (fs::is_regular_file(name, ignored)) return name;
   const bool folder = fs::is_directory(beside, ignored) || fs::is_directory(name, ignored);

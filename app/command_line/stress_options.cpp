@@ -20,6 +20,7 @@ CLI::Validator one_of(const std::vector<std::string_view>& names) {
 }
 std::vector<std::string_view> names_of(const auto& table) {
   std::vector<std::string_view> names;
+  names.reserve(table.size());
   for (const auto& entry : table) names.push_back(entry.name);
   return names;
 }

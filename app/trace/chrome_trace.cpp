@@ -12,7 +12,6 @@ namespace carousel::app {
 namespace {
 
 using ringbus::Slice;
-using ringbus::SliceKind;
 
 class ChromeTrace final : public TraceWriter {
  public:

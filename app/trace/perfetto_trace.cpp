@@ -14,7 +14,6 @@ namespace carousel::app {
 namespace {
 
 using ringbus::Slice;
-using ringbus::SliceKind;
 
 class PerfettoTrace final : public TraceWriter {
  public:

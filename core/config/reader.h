@@ -88,6 +88,7 @@ class Reader : public RowVisitor<Reader> {
   template <class E>
   static std::vector<std::string> names() {
     std::vector<std::string> out;
+    out.reserve(kEnumNames<E>.size());
     for (const auto& entry : kEnumNames<E>) out.emplace_back(entry.name);
     return out;
   }

@@ -30,7 +30,7 @@ std::string bytes_text(std::uint64_t bytes) {
 std::string seconds_text(double seconds) {
   if (seconds < 1) return fmt::format("{:.1f} ms", seconds * 1000);
   if (seconds < 100) return fmt::format("{:.2f} s", seconds);
-  const auto whole = static_cast<std::uint64_t>(seconds + 0.5);
+  const auto whole = static_cast<std::uint64_t>(std::llround(seconds));
   return fmt::format("{} min {} s", whole / 60, whole % 60);
 }
 

@@ -56,7 +56,8 @@ std::uint16_t Topology::links_between(std::size_t direction, ResourceId from, Re
 Topology::Route Topology::route(ResourceId from, ResourceId to, std::uint32_t random) const {
   Route best{0, links_between(0, from, to)};
   std::uint32_t equal = 1;
-  for (std::uint16_t d = 1; d < directions(); ++d) {
+  const auto directions = static_cast<std::uint16_t>(this->directions());
+  for (std::uint16_t d = 1; d < directions; ++d) {
     const std::uint16_t hops = links_between(d, from, to);
     if (hops < best.hops) {
       best = {d, hops};

@@ -66,10 +66,11 @@ class ReferenceBuilder {
   };
 
   float blocks(std::size_t n) const {
-    return static_cast<float>((n + settings_.block_primitives - 1) / settings_.block_primitives);
+    const std::size_t full_or_not = (n + settings_.block_primitives - 1) / settings_.block_primitives;
+    return static_cast<float>(full_or_not);
   }
 
-  static Parts by_centroid(References references, SpacePlane s) {
+  static Parts by_centroid(const References& references, SpacePlane s) {
     Parts out;
     for (const BuildPrimitive& p : references) (centroid(p, s.axis) < s.at ? out.below : out.above).push_back(p);
     return out;

@@ -23,7 +23,7 @@ TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRule
       allowances_(acks_in_.size(), {settings.link_depth, {}}),
       passing_acks_(acks_in_.size()) {
   for (std::size_t d = 0; d < ports.in.size(); ++d) ways_.push_back({ports.in[d], std::move(ports.out[d])});
-  queues_.assign(settings.shared_queue ? 1 : ways_.size() + 1, {std::move(source), packets});
+  queues_.assign(settings.shared_queue ? 1 : ways_.size() + 1, {source, packets});
   for (SourceQueue& queue : queues_) {
     create(queue);
     due_ = std::min(due_, queue.due);
