@@ -48,6 +48,7 @@ class [[nodiscard]] Everything final : public Base<T> {
   struct Inner {
     int one = 1, two = 2;
     int three() const { return 3; }
+    friend auto operator<=>(const Inner& x, const Inner& y) { return x.one <=> y.one; }
   };
   using Alias = int;
 
