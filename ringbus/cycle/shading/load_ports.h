@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "core/types/ray.h"
 #include "ringbus/time/clock.h"
 

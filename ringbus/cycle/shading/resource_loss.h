@@ -4,7 +4,8 @@
 #include <memory>
 #include <optional>
 
-#include "core/config/config.h"
+#include "core/config/fields/faults.h"
+#include "core/config/fields/topology.h"
 #include "core/types/workload.h"
 #include "ringbus/faults/outstanding_rays.h"
 #include "ringbus/results/cycle_result.h"

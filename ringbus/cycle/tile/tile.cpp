@@ -55,8 +55,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       samples_(resource_.collections(), settings.observed.samples,
                counter_index(PortCounter::kBusy, ports_.out.size(), kFirstPortCounter)),
       ledger_(tester_),
-      partial_when_idle_(settings.resource.collections.partial == Partial::kIdle),
-      steps_always_(dispatcher_.has_window() || partial_when_idle_ || fault_.is_ahead()) {
+      steps_always_(dispatcher_.has_window() || issue_.waits_for_idle() || fault_.is_ahead()) {
   recorder_.record_units(tester_, static_cast<std::size_t>(settings.testers.contexts));
 }
 
@@ -67,7 +66,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
   bool again = finish_tests(now);
   again |= help_.step(now, contexts_.all_free());
   // Packets that pass by make room for nothing else here; but dispatch may be idle then.
-  again |= dispatcher_.cut_through(now) && partial_when_idle_;
+  again |= dispatcher_.cut_through(now) && issue_.waits_for_idle();
   again |= dispatcher_.handle(now);
   again |= entry_.admit(now);
   // The issue queue takes no more than before if only packets have been sent since.
@@ -103,7 +102,7 @@ void Tile::begin_step(Cycle now) {
     shapes_.take_answers(now);
     issue_.take_spilled();
   }
-  serve(now);
+  served_ |= contexts_.serve(now);
   if (contexts_.starts_later()) contexts_.start(now);
   if (side) {
     contexts_.take_any_hit(now);

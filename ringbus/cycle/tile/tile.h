@@ -66,12 +66,11 @@ class Tile final : public ResourceAgent {
   bool keep_running(Cycle now);
   void begin_step(Cycle now);
   void end_step(Cycle now);
-  void serve(Cycle now) { served_ |= contexts_.serve(now); }
   bool finish_tests(Cycle now) {
-    serve(now);
+    served_ |= contexts_.serve(now);
     return contexts_.finish(now);
   }
-  bool fill_issue(Cycle now) { return issue_.fill(now, partial_when_idle_ && dispatcher_.links_rest(now)); }
+  bool fill_issue(Cycle now) { return issue_.fill(now, issue_.waits_for_idle() && dispatcher_.links_rest(now)); }
 
   // Parts of a step that may be done alone (tile_events.cpp).
   bool take_shapes(Cycle now);
@@ -133,9 +132,8 @@ class Tile final : public ResourceAgent {
   TileSamples samples_;
   TileLedger ledger_;
 
-  bool partial_when_idle_;  // `collections.partial: idle`
-  bool steps_always_;       // any event may matter to all parts
-  bool served_ = false;     // a test has begun since the issue queue was filled
+  bool steps_always_;    // any event may matter to all parts
+  bool served_ = false;  // a test has begun since the issue queue was filled
   Cycle now_ = 0;
   /// Times of events.
   struct Due {

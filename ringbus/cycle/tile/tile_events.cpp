@@ -21,7 +21,7 @@ Cycle Tile::next_here() const {
   const Cycle free = dispatch_.free_at();
   if (free <= now_ || free >= first) return first;
   // Collections that are not full may go when the dispatch stage has nothing else to do.
-  const bool partial = partial_when_idle_ && issue_.empty() && !resource_.idle();
+  const bool partial = issue_.waits_for_idle() && issue_.empty() && !resource_.idle();
   return partial || dispatcher_.is_wanted(now_) ? free : first;
 }
 

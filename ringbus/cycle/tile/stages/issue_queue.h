@@ -52,6 +52,8 @@ class IssueQueue {
   /// Takes in answers to reads of spilled entries.
   void take_spilled();
 
+  /// Collections that are not ready go when the resource has nothing else to do (`collections.partial: idle`).
+  bool waits_for_idle() const { return partial_ == Partial::kIdle; }
   /// The time at which a collection that is not ready may go (`collections.partial`); kNever while that waits for
   /// another event.
   Cycle next_partial() const { return next_partial_; }
