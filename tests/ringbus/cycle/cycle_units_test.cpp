@@ -7,7 +7,7 @@
 
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/memory/memory.h"
-#include "ringbus/cycle/shapes/line_cache.h"
+#include "ringbus/cycle/shapes/cache/line_cache.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/testers/unit_bank.h"

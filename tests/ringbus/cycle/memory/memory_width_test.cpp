@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/memory/memory.h"
-#include "ringbus/cycle/shapes/line_cache.h"
+#include "ringbus/cycle/shapes/cache/line_cache.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
 #include "tests/ringbus/support/timed_machine.h"
 

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/shapes/strip_walks.h"
+#include "ringbus/cycle/shapes/cache/strip_walks.h"
 
 namespace carousel::ringbus::cycle {
 

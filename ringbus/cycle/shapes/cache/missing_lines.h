@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ringbus/cycle/shapes/cache/index_pool.h"
+
 namespace carousel::ringbus::cycle {
 
 /// The lines that are on their way to a cache, each with the requests that wait for it, in the order in which they
@@ -59,28 +61,6 @@ class MissingLines {
   struct Wait {
     std::uint32_t request = 0, next = kNone;
   };
-  /// Things by index; indices that have been given back are taken again.
-  template <class T>
-  class Pool {
-   public:
-    T& operator[](std::uint32_t index) { return things_[index]; }
-    const T& operator[](std::uint32_t index) const { return things_[index]; }
-    std::uint32_t take(const T& thing) {
-      if (free_.empty()) {
-        things_.push_back(thing);
-        return static_cast<std::uint32_t>(things_.size() - 1);
-      }
-      const std::uint32_t index = free_.back();
-      free_.pop_back();
-      things_[index] = thing;
-      return index;
-    }
-    void give_back(std::uint32_t index) { free_.push_back(index); }
-
-   private:
-    std::vector<T> things_;
-    std::vector<std::uint32_t> free_;
-  };
 
   std::size_t bucket(std::uint64_t line) const {
     return static_cast<std::size_t>(line * 0x9e3779b97f4a7c15ull >> 32) & (buckets_.size() - 1);
@@ -99,8 +79,8 @@ class MissingLines {
   }
 
   std::vector<std::uint32_t> buckets_;  // their number is a power of two
-  Pool<Line> lines_;
-  Pool<Wait> waits_;
+  IndexPool<Line> lines_;
+  IndexPool<Wait> waits_;
   std::size_t size_ = 0;
 };
 
