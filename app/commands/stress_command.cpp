@@ -28,7 +28,7 @@
 #include "report/stress/stress_table.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
-#include "ringbus/native/link.h"
+#include "ringbus/native/links/link.h"
 #include "ringbus/stress/expected.h"
 #include "ringbus/stress/stress_run.h"
 

@@ -3,7 +3,7 @@
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/workload.h"
-#include "ringbus/native/queue_link.h"
+#include "ringbus/native/links/queue_link.h"
 #include "ringbus/results/run_result.h"
 
 namespace carousel::ringbus {

@@ -15,8 +15,8 @@
 
 #include "core/statistics/rank_counts.h"
 #include "ringbus/native/completed_queue.h"
+#include "ringbus/native/links/rank_link.h"
 #include "ringbus/native/native_recorder.h"
-#include "ringbus/native/rank_link.h"
 #include "ringbus/native/shape_travel.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/ranks/end_count.h"

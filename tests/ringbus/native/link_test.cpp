@@ -1,4 +1,4 @@
-#include "ringbus/native/link.h"
+#include "ringbus/native/links/link.h"
 
 #include <array>
 

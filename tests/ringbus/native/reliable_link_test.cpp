@@ -1,5 +1,5 @@
 // Links that fail, and what makes them good again.
-#include "ringbus/native/reliable_link.h"
+#include "ringbus/native/links/reliable_link.h"
 
 #include <array>
 #include <atomic>

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "core/system/error.h"
-#include "ringbus/native/link.h"
+#include "ringbus/native/links/link.h"
 #include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus {

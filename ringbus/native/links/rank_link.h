@@ -9,7 +9,7 @@
 #include <span>
 #include <utility>
 
-#include "ringbus/native/link.h"
+#include "ringbus/native/links/link.h"
 
 namespace carousel::ringbus {
 

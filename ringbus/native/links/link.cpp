@@ -1,4 +1,4 @@
-#include "ringbus/native/link.h"
+#include "ringbus/native/links/link.h"
 
 #include <string_view>
 #include <vector>
@@ -8,7 +8,7 @@
 #include "core/config/config.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
-#include "ringbus/native/queue_link.h"
+#include "ringbus/native/links/queue_link.h"
 #include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus {

@@ -7,8 +7,8 @@
 #include <span>
 
 #include "core/config/config.h"
-#include "ringbus/native/link.h"
-#include "ringbus/native/reliable_link.h"
+#include "ringbus/native/links/link.h"
+#include "ringbus/native/links/reliable_link.h"
 #include "ringbus/queues/link_queue.h"
 
 namespace carousel::ringbus {

@@ -11,7 +11,7 @@
 
 #include "ringbus/faults/faulty_wire.h"
 #include "ringbus/faults/retransmit_timer.h"
-#include "ringbus/native/link.h"
+#include "ringbus/native/links/link.h"
 #include "ringbus/packets/packet_image.h"
 #include "ringbus/queues/spsc_ring.h"
 #include "ringbus/schedule/schedule.h"
