@@ -15,8 +15,8 @@
 #include "ringbus/cycle/shapes/cache/missing_lines.h"
 #include "ringbus/cycle/shapes/cache/pending_requests.h"
 #include "ringbus/cycle/shapes/cache/tag_array.h"
-#include "ringbus/cycle/time/agent.h"
-#include "ringbus/cycle/time/channel.h"
+#include "ringbus/time/agent.h"
+#include "ringbus/time/channel.h"
 
 namespace carousel::ringbus::cycle {
 

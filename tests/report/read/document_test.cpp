@@ -90,10 +90,9 @@ TEST(DocumentReader, RefusesListsThatDoNotFitTogether) {
 TEST(DocumentReader, RefusesWhatWasChangedAfterItWasWritten) {
   for (const SampleDocument& sample : sample_documents()) {
     Json json = sealed(sample.json);
-    json[sample.kind == DocumentKind::kRayLife    ? "latency"
-         : sample.kind == DocumentKind::kStress   ? "seconds"
-         : sample.kind == DocumentKind::kAccuracy ? "seed"
-                                                  : "schema_version"] = 1;
+    if (sample.kind == DocumentKind::kRayLife) json["latency"] = 1;
+    if (sample.kind == DocumentKind::kStress) json["seconds"] = 1;
+    if (sample.kind == DocumentKind::kAccuracy) json["seed"] = 1;
     if (sample.kind == DocumentKind::kPoint) json["keys"]["topology.resources"] = 77;
     if (sample.kind == DocumentKind::kSweep) {
       json = sealed(sample.json);

@@ -5,12 +5,12 @@
 #include <queue>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/shapes/cache/cache_clients.h"
 #include "ringbus/cycle/shapes/cache/index_pool.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

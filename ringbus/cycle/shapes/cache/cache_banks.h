@@ -5,10 +5,10 @@
 #include <deque>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/messages/memory_messages.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

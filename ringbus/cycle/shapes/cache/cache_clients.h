@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "ringbus/cycle/messages/memory_messages.h"
-#include "ringbus/cycle/time/channel.h"
+#include "ringbus/time/channel.h"
 
 namespace carousel::ringbus::cycle {
 

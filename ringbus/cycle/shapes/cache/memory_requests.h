@@ -5,8 +5,8 @@
 #include <queue>
 #include <vector>
 
-#include "ringbus/cycle/time/channel.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/channel.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -6,7 +6,7 @@
 
 #include "ringbus/cycle/shapes/cache/index_pool.h"
 #include "ringbus/cycle/shapes/cache/strip_walks.h"
-#include "ringbus/cycle/time/clock.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 

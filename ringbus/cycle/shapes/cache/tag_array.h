@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "ringbus/cycle/shapes/cache/line_cache.h"
 
 namespace carousel::ringbus::cycle {
