@@ -37,6 +37,13 @@ void machine_words(Words& w) {
   w.line("scene")
       .item("*: N triangles, N instances", "scene", "the scene, its triangles (each counted once) and its instances")
       .item("N x N pixels, N samples", "config.image", "size of the picture, and paths from each pixel");
+  w.line("structure")
+      .item("*: N structures, N strips deep", "structure.levels[].structures",
+            "a level of the acceleration structure: its structures, shared ones once, and the longest way down in them")
+      .item("N inner nodes of N children", "structure.levels[].inner_nodes",
+            "inner nodes of the level, and the children that one of them has")
+      .item("N leaves", "structure.levels[].leaves")
+      .item("N", "structure.levels[].bytes");
   w.line("engine")
       .item("native: N resources, * on N threads, N shader workers", "config.topology",
             "the machine: its compute resources, the shape of its network, the threads of the host that play them, and "
