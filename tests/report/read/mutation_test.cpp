@@ -101,7 +101,7 @@ Json changed(const Json& good, Random& random) {
 }
 
 std::string changed_text(std::string text, Random& random) {
-  for (std::size_t n = 1 + random.below(4); n > 0; --n) {
+  for (std::size_t n = 1 + random.below(4); n > 0 && !text.empty(); --n) {
     const std::size_t at = random.below(text.size());
     if (random.below(2) == 0)
       text[at] = static_cast<char>(random.below(256));
