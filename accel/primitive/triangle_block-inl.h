@@ -82,10 +82,10 @@ HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, c
   return changed;
 }
 
-/// As update_closest(), for crossings that have been decided in float. Those whose box may hold the closest hit compete
-/// with distances and weights computed in double. A hit that the float puts ahead of the ray's start stays a hit, at
-/// the start or at the largest float if need be: the rounding that moved it there has moved the surface that the exact
-/// ray meets instead.
+/// As update_closest(), for crossings that have been decided in float. Crossings whose box may hold the closest hit
+/// compete with distances and weights computed in double. A hit that the float puts ahead of the ray's start stays a
+/// hit, at the start or at the largest float if need be: the rounding that moved it there has moved the surface that
+/// the exact ray meets instead.
 template <class Slab>
 HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlock& block,
                                            const Crossings<float>& crossings, const LocalRay<Slab>& ray, Hit& hit) {

@@ -30,7 +30,8 @@ void make_better(std::int64_t& value, Better how) {
   }
 }
 
-/// The visitor of rows that are relaxed. Each calls `found(path, class, words, how, apply)`.
+/// The visitor of rows that are relaxed. It calls `found(path, class, words before the keys, words behind them,
+/// Relaxed, in_override)` for each, and relaxes the value if that returns true.
 template <class Found>
 class RelaxedRows : public config::RowWalk<RelaxedRows<Found>> {
  public:

@@ -12,8 +12,8 @@
 #include "ringbus/topology/plan.h"
 
 // A new topology takes these places and no others (docs/extending.md has an example):
-//   1. its value in TopologyShape with its name and its properties (core/config/fields/topology.h); if an engine cannot
-//      run it, also a row in core/config/not_built.cpp;
+//   1. its value in TopologyShape with its name and its properties (core/config/fields/topology.h); if one engine alone
+//      can run it, also its place in `.only` on the row of the key there;
 //   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, the next node in each
 //      direction, hubs, packets in flight and the verdict on deadlock. Shapes whose packets travel rings only name the
 //      rounds (rounds.h);

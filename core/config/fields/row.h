@@ -20,11 +20,12 @@ struct Relaxed {
 };
 inline constexpr int kStorageTimes = 2;  ///< for storage, which the host has to hold too
 
-/// What `field`, `field_or_auto`, `choice` and `section_or_number` of a visitor return, so that a row can go on:
+/// The value that `field`, `field_or_auto`, `choice` and `section_or_number` of a visitor return, so that a row goes
+/// on:
 ///   .relax(class, Better or value, [Relaxed, condition])   the search relaxes the key, where the condition holds
 ///   .only(engine, words, [values])                         the other engine does not have these values, or any but the
 ///                                                          default; the words say in messages what it lacks
-/// This one is for visitors to which that is nothing.
+/// This type ignores both; visitors that need them return a type of their own.
 struct Row {
   template <class... Rest>
   constexpr Row relax(const Rest&...) const {

@@ -13,7 +13,7 @@
 
 namespace carousel::ringbus::cycle {
 
-/// What ray control knows of a resource that stops, and of the rays that are lost with it.
+/// The state of ray control while a resource stops, and the rays that are lost with that resource.
 ///
 /// The resource sends a last beat, which stands for the regular ones of its wires. `silence_cycles` later ray control
 /// gives it up and orders all resources to discard their work. When all of them are drained, the rays that have not

@@ -87,7 +87,7 @@ class Tile final : public ResourceAgent {
   Cycle next_but_shapes() const { return std::min({entry_.next_arrival(), help_.next_job(), any_hit_.next()}); }
   Cycle next_here() const;
 
-  // What its time is accounted to.
+  // The states to which its time is accounted.
   TileState classify(bool blocked) const;
   void note_state(Cycle now);
   void note_blocked(Cycle now);

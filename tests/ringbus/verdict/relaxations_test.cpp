@@ -167,6 +167,14 @@ TEST(WhatIf, SaysWhatToSet) {
         << what_if.name();
   }
   EXPECT_TRUE(names.contains("shading"));
+  // A class that has several keys names only those that this machine feels: it has no bundles and no cull planes.
+  const auto latency =
+      std::find_if(all.begin(), all.end(), [](const WhatIf& one) { return one.name() == "test_latency"; });
+  ASSERT_NE(latency, all.end());
+  for (const std::string& set : latency->sets) {
+    EXPECT_FALSE(set.starts_with("testers.plane.")) << set;
+    EXPECT_FALSE(set.starts_with("testers.bundle.")) << set;
+  }
   EXPECT_TRUE(names.contains("box_tests"));
   EXPECT_FALSE(names.contains("memory_bandwidth"));
 }

@@ -60,7 +60,7 @@ class Dispatcher {
   }
 
  private:
-  /// What becomes of a packet that has arrived.
+  /// The ways in which dispatch deals with a packet that has arrived.
   enum class Action : std::uint8_t {
     kPassOn,      ///< it has no rays here, and is looked through
     kHear,        ///< it is heard, and its owner does not wait for this resource

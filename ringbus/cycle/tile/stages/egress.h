@@ -41,7 +41,7 @@ class Egress {
     waits_for_place_ |= !may;
     return may;
   }
-  /// What dispatch would take up waits for one of these, as noted since forget_waits().
+  /// True if dispatch has refused a packet for want of a place or a credit since forget_waits().
   bool waits_for_place() const { return waits_for_place_; }
   void forget_waits() { waits_for_place_ = false; }
 

@@ -12,10 +12,11 @@ namespace carousel::ringbus::cycle {
 /// nothing since another one has stopped.
 class FailStop {
  public:
-  FailStop(const FaultsConfig::Resource& fault, ResourceId here) : fault_(fault), is_here_(fault.number == here.value) {
+  FailStop(const FaultsConfig::Resource& fault, ResourceId here) : fault_(fault) {
     using Kind = FaultsConfig::Resource::Kind;
-    pauses_ = is_here_ && fault.kind == Kind::kPause;
-    stops_ = is_here_ && fault.kind == Kind::kStop;
+    const bool is_here = fault.number == here.value;
+    pauses_ = is_here && fault.kind == Kind::kPause;
+    stops_ = is_here && fault.kind == Kind::kStop;
   }
 
   /// Neither has happened yet, and one of them will.
@@ -50,7 +51,7 @@ class FailStop {
   bool is_due(std::uint64_t completed) const { return completed >= static_cast<std::uint64_t>(fault_.after_rays); }
 
   FaultsConfig::Resource fault_;
-  bool is_here_, pauses_ = false, stops_ = false, drained_sent_ = false;
+  bool pauses_ = false, stops_ = false, drained_sent_ = false;
   std::uint64_t discarded_ = 0;
 };
 

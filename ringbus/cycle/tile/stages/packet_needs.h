@@ -11,7 +11,7 @@
 
 namespace carousel::ringbus::cycle {
 
-/// What a packet asks of a resource: the shapes of its tests, and how many of its entries dispatch reads.
+/// The needs of a packet at a resource: the shapes of its tests, and the number of its entries that dispatch reads.
 class PacketNeeds {
  public:
   /// Keeps references. `blocks`: by which collections are keyed; null: by nodes. `two_outputs`: results of primitives
@@ -39,7 +39,7 @@ class PacketNeeds {
     return size_.read_on_visit(packet, memory_, is_treelet(packet));
   }
   std::size_t read_at_owner(const Packet& packet) const {
-    // What has met primitives goes past the collections, but for rays that have other nodes to visit.
+    // Rays that have met primitives go past the collections, unless they have other nodes to visit.
     if (two_outputs_ && !packet.key.ref.is_inner())
       return static_cast<std::size_t>(
           std::count_if(packet.next.begin(), packet.next.end(), [](const NextNode& next) { return next.any; }));
