@@ -110,13 +110,13 @@ class TrafficRun {
     out.packets = static_cast<std::uint64_t>(config_.workload.traffic.packets);
     out.flits = nodes_.front()->flits();
     for (const auto& node : nodes_) {
-      out.cycles = std::max(out.cycles, node->last() + 1);
-      out.delivered += node->delivered();
-      out.offered += node->offered();
-      out.accepted += node->accepted();
-      out.accepted_hops += node->accepted_hops();
-      out.routers += node->routers();
-      out.latency.add(node->latency());
+      out.cycles = std::max(out.cycles, node->sink().last() + 1);
+      out.delivered += node->sink().delivered();
+      out.offered += node->source().offered();
+      out.accepted += node->sink().accepted();
+      out.accepted_hops += node->sink().accepted_hops();
+      out.routers += node->source().routers();
+      out.latency.add(node->sink().latency());
     }
     std::vector<std::size_t> exits(nodes_.size());
     for (const Topology::Wire& wire : topology_.wires()) {

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/numeric/latency_histogram.h"
+#include "ringbus/cycle/traffic/traffic_plan.h"
+#include "ringbus/cycle/traffic/traffic_settings.h"
+#include "ringbus/cycle/traffic/traffic_token.h"
+#include "ringbus/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The sink of a node. One flit a cycle gets out to it, and it counts the packets that it is given.
+class TrafficSink {
+ public:
+  TrafficSink(const TrafficNodeSettings& settings, TrafficWindow window)
+      : eject_cycles_(settings.eject_cycles), flits_(settings.flits), window_(window) {}
+
+  /// Tells whether it takes a packet whose last flit comes at `tail`.
+  bool open(Cycle tail) const { return free_ <= tail; }
+  /// The first tail for which it is open.
+  Cycle opens() const { return free_; }
+  /// Takes a packet; only when open.
+  void deliver(const TrafficToken& token, Cycle tail) {
+    free_ = tail + flits_;
+    last_ = tail + eject_cycles_;  // the sink's packets come one after the other
+    ++delivered_;
+    if (last_ >= window_.begin && last_ < window_.end) {
+      ++accepted_;
+      accepted_hops_ += token.hops;
+    }
+    if (token.created >= window_.begin) latency_.add(last_ - token.created);
+  }
+
+  const LatencyHistogram& latency() const { return latency_; }  ///< latency of measured packets delivered here
+  std::uint64_t delivered() const { return delivered_; }
+  std::uint64_t accepted() const { return accepted_; }            ///< delivered within the window
+  std::uint64_t accepted_hops() const { return accepted_hops_; }  ///< links that these crossed
+  Cycle last() const { return last_; }                            ///< when something was last delivered
+
+ private:
+  Cycle eject_cycles_;
+  std::uint16_t flits_;
+  TrafficWindow window_;
+  Cycle free_ = 0;  // for the next packet's tail
+  LatencyHistogram latency_;
+  std::uint64_t delivered_ = 0, accepted_ = 0, accepted_hops_ = 0;
+  Cycle last_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle
