@@ -5,11 +5,11 @@
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
-#include "ringbus/native/completed_queue.h"
 #include "ringbus/native/links/link.h"
 #include "ringbus/native/links/queue_link.h"
 #include "ringbus/native/rank_gate.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/queues/completed_queue.h"
 
 namespace carousel::ringbus {
 

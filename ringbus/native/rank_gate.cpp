@@ -13,10 +13,10 @@ namespace carousel::ringbus {
 RankGate::RankGate(const Config& config, Transport& transport, Machine& machine, CompletedQueue& completed)
     : transport_(transport),
       machine_(machine),
-      completed_(completed),
       rank_(machine.share.rank()),
       depth_(static_cast<std::size_t>(config.topology.link.depth)),
       links_(machine.topology.wires().size(), nullptr),
+      results_(machine, completed),
       end_(machine.share.rank(), machine.share.ranks()) {
   for (std::uint32_t r = 0; r < machine.share.ranks(); ++r) peers_.push_back(std::make_unique<Peer>());
   if (machine.accel.partition) shapes_.emplace(config, machine);
@@ -56,14 +56,13 @@ void RankGate::load(ResourceId resource, std::span<const RayId> ids, std::span<c
 }
 
 void RankGate::hold(ResourceId issuer, RayGroup&& group) {
-  Held held{issuer, std::move(group), {}};
+  HeldGroups::Needs needs;
   for (std::uint32_t r = 0; r < peers_.size(); ++r) {
     const std::lock_guard lock(peers_[r]->mutex);
-    if (std::exchange(peers_[r]->held, false)) held.needs.emplace_back(r, peers_[r]->rays_sent);
+    if (std::exchange(peers_[r]->held, false)) needs.emplace_back(r, peers_[r]->rays_sent);
   }
-  if (held.needs.empty() && machine_.control.deliver(issuer, held.group)) return;
-  const std::lock_guard lock(held_mutex_);
-  held_.push_back(std::move(held));
+  if (needs.empty() && machine_.control.deliver(issuer, group)) return;
+  held_.add(issuer, std::move(group), std::move(needs));
 }
 
 void RankGate::send_results(ResourceId resource, HitBatch& done, std::vector<std::uint32_t>& slots) {
@@ -96,7 +95,7 @@ bool RankGate::step(bool at_rest) {
   bool moved = receive();
   if (ended()) return moved;
   moved |= deliver_held();
-  hand_over_results();
+  results_.hand_over();
   pass_token(at_rest);
   const bool idle = idle_.load(std::memory_order_relaxed);
   if (idle) idle_.store(false, std::memory_order_relaxed);
@@ -235,7 +234,7 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
   peer.rays_received += message.rays.size();
   peer.rays_taken = message.rays_taken;
   peer.hungry = message.hungry;
-  take_results(message);
+  results_.take(message.results);
   for (std::size_t i = 0; i < message.guests.size(); ++i)
     if (shapes_) shapes_->enter(message.guests[i].packet, message.shapes_of(i));
   for (std::size_t i = 0; i < message.packets.size(); ++i) {
@@ -255,39 +254,9 @@ void RankGate::take(std::uint32_t from, const RankMessage& message) {
   ended_.store(true, std::memory_order_release);
 }
 
-void RankGate::take_results(const RankMessage& message) {
-  if (message.results.empty()) return;
-  for (std::size_t i = 0; i < message.results.size();) {
-    const ResourceId resource = message.results[i].resource;
-    slots_.clear();
-    for (; i < message.results.size() && message.results[i].resource == resource; ++i) {
-      machine_.stores.at(resource.value)->retire(message.results[i].slot);
-      slots_.push_back(message.results[i].slot);
-      results_.push_back(message.results[i].result);
-    }
-    machine_.control.free(resource, slots_);
-  }
-}
-
-/// To the shader workers, unless their queue is full.
-void RankGate::hand_over_results() {
-  if (results_.empty()) return;
-  HitBatch* const batch = completed_.try_take();
-  if (batch == nullptr) return;
-  batch->swap(results_);
-  completed_.push(batch, batch->size());
-}
-
 bool RankGate::deliver_held() {
-  bool any = false;
-  const std::lock_guard lock(held_mutex_);
-  const auto ready = [this](const Held& held) {
-    return std::all_of(held.needs.begin(), held.needs.end(),
-                       [this](const auto& need) { return peers_[need.first]->rays_taken >= need.second; });
-  };
-  for (; !held_.empty() && ready(held_.front()); held_.pop_front(), any = true)
-    if (!machine_.control.deliver(held_.front().issuer, held_.front().group)) break;
-  return any;
+  return held_.deliver([this](std::uint32_t rank) { return peers_[rank]->rays_taken; },
+                       [this](ResourceId issuer, RayGroup& group) { return machine_.control.deliver(issuer, group); });
 }
 
 void RankGate::part(const std::exception_ptr& error, const std::string& stuck) {

@@ -3,7 +3,6 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <deque>
 #include <exception>
 #include <memory>
 #include <mutex>
@@ -14,11 +13,13 @@
 #include <vector>
 
 #include "core/statistics/rank_counts.h"
-#include "ringbus/native/completed_queue.h"
 #include "ringbus/native/links/rank_link.h"
 #include "ringbus/native/native_recorder.h"
-#include "ringbus/native/shape_travel.h"
+#include "ringbus/native/ranks/held_groups.h"
+#include "ringbus/native/ranks/remote_results.h"
+#include "ringbus/native/ranks/shape_travel.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/queues/completed_queue.h"
 #include "ringbus/ranks/end_count.h"
 #include "ringbus/ranks/rank_message.h"
 #include "ringbus/rays/remote_placing.h"
@@ -102,20 +103,12 @@ class RankGate final : public RemotePlacing {
     std::uint64_t messages_received = 0;
     RankCounts counts;
   };
-  /// A group whose rays' data are under way: it may be issued when each rank has taken so many rays.
-  struct Held {
-    ResourceId issuer;
-    RayGroup group;
-    std::vector<std::pair<std::uint32_t, std::uint64_t>> needs;
-  };
 
   bool send(std::uint32_t rank, bool idle);
   bool receive();
   bool next_message(std::uint32_t& from);
   void note_received(std::uint32_t from, std::uint64_t begin);
   void take(std::uint32_t from, const RankMessage& message);
-  void take_results(const RankMessage& message);
-  void hand_over_results();
   bool deliver_held();
   void pass_token(bool at_rest);
   void part(Farewell::Reason reason, const std::string& text);
@@ -123,24 +116,21 @@ class RankGate final : public RemotePlacing {
 
   Transport& transport_;
   Machine& machine_;
-  CompletedQueue& completed_;
-  HitBatch results_;  // hits of rays that completed at other ranks, for the shader workers here
   std::uint32_t rank_;
   std::size_t depth_;  // depth of each link
   NativeRecorder* recorder_ = nullptr;
   std::optional<ShapeTravel> shapes_;
   std::vector<std::unique_ptr<Peer>> peers_;  // by rank; this one's own is not used
   std::vector<RankLink*> links_;              // by wire; null where both ends are here
-  std::mutex held_mutex_;
-  std::deque<Held> held_;
+  HeldGroups held_;
+  RemoteResults results_;
   EndCount end_;
   std::optional<EndToken> token_;  // to be sent to the next rank
   std::atomic<bool> ended_{false}, idle_{false};
   bool stopped_ = false;
   std::string cause_;                 // another rank's, why the run has ended
   RankMessage sending_, received_;    // scratch
-  std::vector<std::uint32_t> slots_;  // scratch
-  std::vector<std::uint64_t> words_;
+  std::vector<std::uint64_t> words_;  // scratch
 };
 
 }  // namespace carousel::ringbus

@@ -5,7 +5,7 @@
 
 #include "core/types/workload.h"
 #include "ringbus/faults/outstanding_rays.h"
-#include "ringbus/native/completed_queue.h"
+#include "ringbus/queues/completed_queue.h"
 #include "ringbus/rays/ray_control.h"
 
 namespace carousel::ringbus {

@@ -1,4 +1,4 @@
-#include "ringbus/native/shape_travel.h"
+#include "ringbus/native/ranks/shape_travel.h"
 
 #include <algorithm>
 
