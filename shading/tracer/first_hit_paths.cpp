@@ -23,12 +23,11 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
   while (!worker.held.empty() && out.size() < end) {
     out.push_back(worker.held.back());
     worker.held.pop_back();
-    // Acquire and release, as below: a thread that reads 0 knows that this ray is in its batch.
-    held_.fetch_sub(1, std::memory_order_acq_rel);
+    paths_.release();
   }
   std::size_t made = 0;
   const std::size_t before = out.size();
-  std::uint64_t started = generated_.load(std::memory_order_acquire);
+  bool all_begun = false;
   do {
     // A first hit sends two rays at most; an odd one is held back.
     worker.begun.clear();
@@ -51,13 +50,13 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
     while (out.size() > end) {
       worker.held.push_back(out.back());
       out.pop_back();
-      held_.fetch_add(1, std::memory_order_acq_rel);
+      paths_.hold();
     }
-    // Added after rays are held: a thread that reads the full count here also reads their number.
-    started = generated_.fetch_add(made, std::memory_order_acq_rel) + made;
+    // After rays are held: a thread that reads the full count also reads their number.
+    all_begun = paths_.begin(made);
     // A path that ends at its first hit has no ray; the engine would wait for one forever.
   } while (made > 0 && out.size() == before && out.size() < end);
-  return {out.size() - (end - max_rays), started == paths_ && held_.load(std::memory_order_acquire) == 0};
+  return {out.size() - (end - max_rays), all_begun && paths_.none_held()};
 }
 
 }  // namespace carousel::shading

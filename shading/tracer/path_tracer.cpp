@@ -43,21 +43,19 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
                        std::size_t workers)
     : scene_(scene),
       plan_(plan_effects(scene, config)),
-      paths_(static_cast<std::uint64_t>(config.image.width) * static_cast<std::uint64_t>(config.image.height) *
-             static_cast<std::uint64_t>(config.image.samples)),
       max_depth_(plan_.on(Effect::kBounceRays) ? u32(config.image.max_depth) : 1),
       spawn_(config.accuracy.spawn),
       ray_flags_{
           flags_of(config.shading.camera_rays), flags_of(config.shading.bounce_rays),
           static_cast<std::uint8_t>(flags_of(config.shading.shadow_rays) | (has_panes(plan_) ? kRayClosest : 0))},
       sampler_(static_cast<std::uint64_t>(config.image.seed), u32(config.image.samples)),
-      order_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
+      paths_(PixelOrder(u32(config.image.width), u32(config.image.height), u32(config.image.samples))),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
               u32(config.image.width), u32(config.image.height)),
       lights_(scene, plan_.on(Effect::kShadowRays), plan_.on(Effect::kShadowRays) && plan_.on(Effect::kAreaLights)),
       media_(plan_.on(Effect::kVolume)),
       panes_(has_panes(plan_)),
-      pool_(max_paths_in_flight, paths_, plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
+      pool_(max_paths_in_flight, paths_.count(), plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
       film_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       workers_(std::make_unique<Worker[]>(workers)),
       worker_count_(workers) {
@@ -67,13 +65,12 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
 PathTracer::~PathTracer() = default;
 
 void PathTracer::set_sample(const PathSample* sample) {
-  sample_ = sample;
-  paths_ = sample == nullptr ? order_.count() : sample->count();
-  pool_.set_paths(paths_);
+  paths_.set_sample(sample);
+  pool_.set_paths(paths_.count());
 }
 
 PixelSample PathTracer::begin_path(std::uint64_t ordinal, std::uint32_t index) {
-  const PixelSample at = order_.at(sample_ == nullptr ? ordinal : sample_->ordinal(ordinal));
+  const PixelSample at = paths_.at(ordinal);
   PathState& path = pool_.state(index);
   // Relaxed and plain: no other thread knows this path until the engine has handed its ray over.
   for (auto& channel : path.radiance) channel.store(0, std::memory_order_relaxed);
@@ -99,10 +96,7 @@ Workload::Generated PathTracer::generate(WorkerId worker_id, std::size_t max_ray
     emit(camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample)),
          {worker.states[i], RayKind::kCamera, 0, 0, 0}, worker, out);
   }
-  // Counted after appending, so that a thread that reads the full count knows that no other call is still appending.
-  // Acquire and release pair with the same operation of the other workers' calls.
-  const std::uint64_t before = generated_.fetch_add(admitted.count, std::memory_order_acq_rel);
-  return {admitted.count, before + admitted.count == paths_};
+  return {admitted.count, paths_.begin(admitted.count)};
 }
 
 void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& out) {

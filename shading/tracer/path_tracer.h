@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -20,6 +19,7 @@
 #include "shading/effects/effects_plan.h"
 #include "shading/lights/light_set.h"
 #include "shading/math/sampler.h"
+#include "shading/path/frame_paths.h"
 #include "shading/path/path_pool.h"
 #include "shading/raster/first_hits.h"
 #include "shading/surface/surface.h"
@@ -152,12 +152,11 @@ class PathTracer : public Workload {
 
   const scene::Scene& scene_;
   const EffectsPlan plan_;
-  std::uint64_t paths_;
   const std::uint32_t max_depth_;  // 1 if there is nothing for bounce rays to find
   const SpawnOffset spawn_;
   const std::array<std::uint8_t, kRayKinds> ray_flags_;
   const Sampler sampler_;
-  const PixelOrder order_;
+  FramePaths paths_;
   const CameraRays camera_;
   const LightSet lights_;
   const bool media_, panes_;
@@ -167,11 +166,8 @@ class PathTracer : public Workload {
   Film film_;
   std::unique_ptr<Worker[]> workers_;
   std::size_t worker_count_;
-  std::atomic<std::uint64_t> generated_{0};  // camera rays that generate() calls have appended
-  std::atomic<std::uint64_t> held_{0};       // rays that workers hold back for their next generate()
   RayRecorder* recorder_ = nullptr;
   const FirstHits* first_hits_ = nullptr;
-  const PathSample* sample_ = nullptr;  // null: all paths
 };
 
 }  // namespace carousel::shading
