@@ -2,7 +2,8 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
+#include "core/config/fields/workload.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
