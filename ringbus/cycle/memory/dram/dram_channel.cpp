@@ -14,6 +14,7 @@ DramChannel::DramChannel(const DramTiming& timing, std::size_t places)
       banks_(timing.all_banks()),
       groups_(timing.pseudo_channels * timing.groups),
       pseudos_(timing.pseudo_channels),
+      buses_(timing.two_buses),
       refresh_due_(timing.refi),
       next_(timing.refi) {
   for (std::uint32_t i = 0; i < banks_.size(); ++i) {
@@ -51,15 +52,6 @@ const DramRequest* DramChannel::take_arrivals(DramCycle now) {
 bool DramChannel::next_kind() const {
   const std::size_t reads = queues_[0].size(), writes = queues_[1].size();
   return writing_ ? writes > (reads > 0 ? low_ : 0) : writes >= high_ || (reads == 0 && writes > 0);
-}
-
-void DramChannel::use_row_bus(DramCycle until) {
-  row_bus_ = until;
-  if (!timing_.two_buses) column_bus_ = until;
-}
-void DramChannel::use_column_bus(DramCycle until) {
-  column_bus_ = until;
-  if (!timing_.two_buses) row_bus_ = until;
 }
 
 DramChannel::Issued DramChannel::step() {
@@ -121,12 +113,12 @@ bool DramChannel::further_command(bool column, bool row, DramCycle now) {
   if (half_ && (needed >= half_->latest || (!column && !row))) {
     open_for(half_->entry);
     half_.reset();
-    use_row_bus(now + 1);
+    buses_.use_row(now + 1);
     return true;
   }
   if (!stopped) return false;
   behind_clock_ = column_;
-  use_column_bus(now + 1);
+  buses_.use_column(now + 1);
   return true;
 }
 
@@ -145,7 +137,7 @@ void DramChannel::set_row(std::uint32_t bank, std::uint64_t row) {
 /// Closes all rows with one command as soon as all may be closed, and refreshes when all banks could be activated.
 void DramChannel::refresh(DramCycle now, DramCycle& wake) {
   if (refresh_ == Refresh::kClose) {
-    DramCycle at = std::max(row_bus_, precharge_);
+    DramCycle at = std::max(buses_.row_free(), precharge_);
     bool open = false;
     for (const Bank& bank : banks_) {
       if (bank.row == kClosed) continue;
@@ -163,17 +155,17 @@ void DramChannel::refresh(DramCycle now, DramCycle& wake) {
         set_row(i, kClosed);
         bank.activate = std::max(bank.activate, now + timing_.rp);
       }
-      use_row_bus(now + 1);
+      buses_.use_row(now + 1);
       precharge_ = now + timing_.ppd;
     }
     refresh_ = Refresh::kRefresh;
   }
-  DramCycle at = row_bus_;
+  DramCycle at = buses_.row_free();
   for (const Bank& bank : banks_) at = std::max(at, bank.activate);
   wake = std::min(wake, std::max(at, now + 1));
   if (at > now) return;
   for (Bank& bank : banks_) bank.activate = now + timing_.rfc;
-  use_row_bus(now + 1);
+  buses_.use_row(now + 1);
   refresh_ = Refresh::kNone;
   ++counts_.refreshes;
   counts_.refresh_cycles += static_cast<std::uint64_t>(timing_.rfc);
@@ -204,7 +196,7 @@ DramChannel::Issued DramChannel::issue_column(const Plan& column, DramCycle now)
     not_before(bank.precharge, now + timing_.rtp);
     not_before(pseudo.column[1], now + timing_.read_to_write);
   }
-  use_column_bus(now + 1);
+  buses_.use_column(now + 1);
   clock_stops_ = std::max(clock_stops_, done + timing_.clock_post);
   if (!entry.counted) ++counts_.row_hits;
   ++(write ? counts_.writes : counts_.reads);
@@ -223,7 +215,7 @@ void DramChannel::issue_row(const Plan& row, DramCycle now) {
     waiting.counted = true;
     set_row(row.bank, kClosed);
     bank.activate = std::max(bank.activate, now + timing_.rp);
-    use_row_bus(now + 1);
+    buses_.use_row(now + 1);
     precharge_ = now + timing_.ppd;
     return;
   }
@@ -240,7 +232,7 @@ void DramChannel::issue_row(const Plan& row, DramCycle now) {
   pseudo.activate = now + timing_.rrd_short;
   pseudo.last[pseudo.turn] = now + timing_.faw;
   pseudo.turn = (pseudo.turn + 1) % 4;
-  use_row_bus(now + timing_.activate_cycles);
+  buses_.use_row(now + timing_.activate_cycles);
   if (timing_.aad > 0)
     half_ = {entry, now + timing_.aad};
   else

@@ -8,6 +8,7 @@
 
 #include "core/numeric/latency_histogram.h"
 #include "core/statistics/dram_counts.h"
+#include "ringbus/cycle/memory/dram/dram_command_buses.h"
 #include "ringbus/cycle/memory/dram/dram_queue.h"
 #include "ringbus/cycle/memory/dram/dram_timing.h"
 
@@ -120,8 +121,6 @@ class DramChannel {
   Issued issue_column(const Plan& column, DramCycle now);
   void issue_row(const Plan& row, DramCycle now);
   void open_for(const Entry& entry);
-  void use_row_bus(DramCycle until);
-  void use_column_bus(DramCycle until);
 
   DramTiming timing_;
   std::size_t places_, high_, low_;
@@ -134,10 +133,10 @@ class DramChannel {
   std::vector<Group> groups_;
   std::vector<Pseudo> pseudos_;
   std::optional<HalfActive> half_;
-  std::optional<Plan> behind_clock_;        // is issued in the next cycle: the data clock has been started for it
-  DramCycle clock_stops_ = 0;               // when the data clock stops
-  DramCycle row_bus_ = 0, column_bus_ = 0;  // free from
-  DramCycle precharge_ = 0;                 // the earliest of any bank
+  std::optional<Plan> behind_clock_;  // is issued in the next cycle: the data clock has been started for it
+  DramCycle clock_stops_ = 0;         // when the data clock stops
+  DramCommandBuses buses_;
+  DramCycle precharge_ = 0;  // the earliest of any bank
   DramCycle refresh_due_;
   Refresh refresh_ = Refresh::kNone;
   bool writing_ = false;

@@ -9,13 +9,13 @@ namespace carousel::ringbus::cycle {
 /// The earliest cycle of the read or write of a request whose row is open.
 DramCycle DramChannel::column_time(std::uint32_t bank, bool write) const {
   return std::max({banks_[bank].column[write], groups_[banks_[bank].group].column[write],
-                   pseudos_[banks_[bank].pseudo].column[write], column_bus_});
+                   pseudos_[banks_[bank].pseudo].column[write], buses_.column_free()});
 }
 
 /// The earliest cycle of an activate in a group, as far as its banks have a say in common.
 DramCycle DramChannel::activate_gate(const Group& group) const {
   const Pseudo& pseudo = pseudos_[group.pseudo];
-  return std::max({group.activate, pseudo.activate, pseudo.last[pseudo.turn], row_bus_});
+  return std::max({group.activate, pseudo.activate, pseudo.last[pseudo.turn], buses_.row_free()});
 }
 
 /// The next commands, which are not issued before `from`.
@@ -50,7 +50,7 @@ void DramChannel::plan_behind(DramCycle from, bool column, bool row) {
   }
   const std::uint32_t bank = column_.bank;
   const bool rows = row || row_.at < from || row_.bank == bank;
-  if (column || column_.at < std::max(from, column_bus_) || (!column_.active && row_.bank == column_.bank))
+  if (column || column_.at < std::max(from, buses_.column_free()) || (!column_.active && row_.bank == column_.bank))
     plan_columns(from);
   else if (!active_.empty())
     consider_active(static_cast<std::uint32_t>(active_.size() - 1), from);
@@ -92,7 +92,7 @@ void DramChannel::first_row(std::uint64_t banks, DramCycle from, Plan& row) cons
     first = std::min(first, static_cast<std::uint64_t>(at - from) << (kOrderBits + kBankBits) |
                                 (order & 0xffffffffu) << kBankBits | bank);
   };
-  const DramCycle precharge = std::max({from, row_bus_, precharge_});
+  const DramCycle precharge = std::max({from, buses_.row_free(), precharge_});
   for (std::uint64_t left = banks & open_; left != 0; left &= left - 1) {
     const auto bank = static_cast<std::uint32_t>(std::countr_zero(left));
     compare(bank, std::max(precharge, banks_[bank].precharge));
