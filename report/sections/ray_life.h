@@ -3,6 +3,7 @@
 #include <array>
 
 #include "report/schema/checksum.h"
+#include "report/schema/document_version.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -94,6 +95,7 @@ void describe(V& v, const RayTest& r) {
 
 /// The life of one ray, as `carousel follow --json` prints it.
 struct RayLife {
+  std::int64_t schema_version = kDocumentVersion;
   std::string engine, unit;
   RayName ray;
   std::array<double, 3> origin{}, direction{};
@@ -112,6 +114,7 @@ struct RayLife {
 
 template <class V>
 void describe(V& v, const RayLife& r) {
+  v.field("schema_version", r.schema_version, "", "version of these keys");
   v.field("engine", r.engine, "", "native or cycle");
   v.field("unit", r.unit, "", "unit of all times: cycles or seconds");
   v.section("ray", r.ray, "the ray");

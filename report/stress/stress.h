@@ -1,6 +1,7 @@
 #pragma once
 
 #include "report/schema/checksum.h"
+#include "report/schema/document_version.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -121,6 +122,7 @@ void describe(V& v, const StressPairs& r) {
 
 /// The report of `carousel stress`.
 struct Stress {
+  std::int64_t schema_version = kDocumentVersion;
   bool incomplete = false;
   std::uint64_t cores = 0, repetitions = 0;
   double seconds = 0;
@@ -142,6 +144,7 @@ struct Stress {
 
 template <class V>
 void describe(V& v, const Stress& r) {
+  v.field("schema_version", r.schema_version, "", "version of these keys");
   v.field("incomplete", r.incomplete, "", "true if the run was interrupted");
   v.field("cores", r.cores, "cores", "hardware threads of the machine");
   v.field("repetitions", r.repetitions, "", "repetitions of each row, in turn");
