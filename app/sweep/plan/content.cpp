@@ -17,9 +17,13 @@ namespace carousel::app {
 namespace {
 
 std::string read_all(const std::filesystem::path& path) {
-  // A device such as /dev/zero has no end.
-  if (std::error_code ignored; std::filesystem::is_character_file(path, ignored))
-    throw FileError("cannot read " + path.string() + ": expected a plain file, found a device");
+  // A device such as /dev/zero has no end, and what comes through a pipe is there for one reader: a sweep's points read
+  // the file again.
+  std::error_code ignored;
+  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
+  const bool pipe = std::filesystem::is_fifo(status) || std::filesystem::is_socket(status);
+  if (pipe || std::filesystem::is_character_file(status))
+    throw FileError("cannot read " + path.string() + ": expected a plain file, found a " + (pipe ? "pipe" : "device"));
   InputFile in(path);
   if (!in) throw FileError("cannot read " + path.string() + ": " + std::strerror(errno));
   return {std::istreambuf_iterator<char>(in), {}};

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
 
 #include "tests/app/support/program.h"
 
@@ -161,6 +162,12 @@ TEST(EndlessInput, IsRefusedAtOnce) {
   const Outcome sweep = program.run({"sweep", "rays.yaml", "--vary", "topology.resources=1,2", "--quiet"});
   EXPECT_NE(sweep.status, 0);
   EXPECT_THAT(sweep.err, HasSubstr("cannot read /dev/zero: expected a plain file"));
+  // Each point would read the pipe again, and no writer need ever come.
+  ASSERT_EQ(mkfifo((program.folder() / "pipe").c_str(), 0600), 0);
+  program.write("pipe.yaml", "scene: {builtin: cornell}\nworkload: {rays_from: pipe}\n");
+  const Outcome pipe = program.run({"sweep", "pipe.yaml", "--vary", "topology.resources=1,2", "--quiet"});
+  EXPECT_EQ(pipe.status, 2);
+  EXPECT_THAT(pipe.err, HasSubstr("pipe: expected a plain file, found a pipe"));
   EXPECT_THAT(program.run({"check", "/dev/zero"}).err, HasSubstr("/dev/zero"));
 }
 
