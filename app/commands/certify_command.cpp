@@ -61,7 +61,7 @@ std::vector<CertificateCase> read_cases(const std::string& text_or_file) {
 int certify_command(const AccuracyArguments& arguments) {
   const InterruptScope interrupt;
   const std::optional<AccuracyConfig> level = configured_level(arguments);
-  const auto executor = make_tbb_executor(std::max(1u, std::thread::hardware_concurrency()));
+  const auto executor = make_executor(std::max(1u, std::thread::hardware_concurrency()));
   std::optional<report::ProgressLine> line;
   if (!arguments.quiet) line.emplace(stderr);
   const auto show = [&](double part, std::uint64_t cases) {

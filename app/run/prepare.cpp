@@ -142,7 +142,7 @@ accel::StructureSize whole_structure(const accel::StructureSize& share, ringbus:
 
 void build_accel(Prepared& p, ringbus::Transport* transport) {
   accel::select_simd_target(p.config().engine.simd);
-  const auto executor = make_tbb_executor(p.threads);
+  const auto executor = make_executor(p.threads);
   {
     Phase phase("build");
     const accel::BuildRanks ranks = build_ranks(transport);

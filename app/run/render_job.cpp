@@ -44,7 +44,7 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
     } else if (config.primary == Primary::kRaster) {
       const auto start = std::chrono::steady_clock::now();
       first_hits_ = shading::rasterize_first_hits(prepared.scene, config, prepared.alpha_test.get(),
-                                                  *make_tbb_executor(prepared.threads));
+                                                  *make_executor(prepared.threads));
       tracer_->set_first_hits(&first_hits_);
       raster_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     }

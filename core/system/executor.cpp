@@ -141,5 +141,12 @@ std::unique_ptr<Executor> make_jthread_executor(std::size_t threads) {
 std::unique_ptr<Executor> make_tbb_executor(std::size_t threads) {
   return std::make_unique<TbbExecutor>(threads);
 }
+std::unique_ptr<Executor> make_executor(std::size_t threads) {
+#ifdef __SANITIZE_THREAD__
+  return make_jthread_executor(threads);
+#else
+  return make_tbb_executor(threads);
+#endif
+}
 
 }  // namespace carousel

@@ -2,10 +2,8 @@
 
 #include <algorithm>
 #include <atomic>
-#include <exception>
-#include <system_error>
-#include <thread>
 
+#include "core/system/executor.h"
 #include "ringbus/cycle/cycle_engine.h"
 
 namespace carousel::ringbus {
@@ -43,30 +41,19 @@ std::vector<RunResult> PilotRuns::simulate(const std::vector<const Config*>& mac
   std::vector<RunResult> results(machines.size());
   if (machines.empty() || !complete_) return results;
   const std::size_t at_once = std::min(machines.size(), std::max<std::size_t>(1, options_.threads));
-  std::atomic<std::size_t> next{0};
-  std::exception_ptr error;
-  const auto work = [&] {
-    for (std::size_t i; (i = next++) < machines.size();) {
+  std::atomic<bool> stopped{false};
+  make_executor(at_once)->parallel_for(machines.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end && !stopped; ++i) {
+      // Without this the others would simulate on when one has failed.
       try {
         results[i] = simulate(*machines[i], std::max<std::size_t>(1, options_.threads / at_once));
-        if (results[i].complete) continue;
       } catch (...) {
-        const std::lock_guard lock(mutex_);
-        error = std::current_exception();
+        stopped = true;
+        throw;
       }
-      next = machines.size();
+      if (!results[i].complete) stopped = true;
     }
-  };
-  {
-    std::vector<std::jthread> others;
-    try {
-      for (std::size_t i = 1; i < at_once; ++i) others.emplace_back(work);
-    } catch (const std::system_error&) {
-      // No further thread can be started; those that run simulate everything.
-    }
-    work();
-  }
-  if (error) std::rethrow_exception(error);
+  });
   return results;
 }
 
