@@ -87,7 +87,9 @@ class Sample {
     const auto moved = class_of("memory_bandwidth");
     const Estimate lines = lines_->frame(moved ? error_of_work(*moved, false) : 0);
     const double line = static_cast<double>(cycle::fetched_bytes(config_.memory)) / out.rays.value;
-    out.memory_bytes_per_ray = {lines.value * line, lines.low * line, lines.high * line};
+    // Lines that are asked for once are as many whether the frame has more rays or fewer than was estimated.
+    const double once = rays_error * std::min(1.0, over(lines_->frame_first().value, lines.value));
+    out.memory_bytes_per_ray = {lines.value * line, lines.low * line * (1 - once), lines.high * line * (1 + once)};
     for (std::size_t i = 0; i < c_.uses.size(); ++i)
       if (c_.uses[i].busy > 0) out.uses.push_back({c_.uses[i].name, use(i, cycles, lines)});
     out.steady = over(static_cast<double>(end_ - begin_), rays_);
