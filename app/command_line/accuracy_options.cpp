@@ -25,6 +25,8 @@ void add_accuracy(CLI::App& program, AccuracyArguments& a) {
       ->check(CLI::Range(2, 64))
       ->capture_default_str();
   accuracy->add_option("--seed", a.seed, "Seed of the hard cases")->capture_default_str();
+  accuracy->add_flag("--table", a.table,
+                     "Print the tables of all levels, hard cases, spawn points and samples (default: five lines)");
   accuracy->add_flag("--json", a.json, kJsonHelp);
   accuracy->add_flag("--quiet", a.quiet, kQuietHelp);
   accuracy->add_flag("--force", a.force,

@@ -21,6 +21,7 @@
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/types/enum_names.h"
+#include "report/accuracy/accuracy_summary.h"
 #include "report/accuracy/accuracy_table.h"
 #include "report/html/study_pages.h"
 #include "report/read/document.h"
@@ -264,7 +265,7 @@ int accuracy_command(const AccuracyArguments& arguments) {
   if (arguments.json)
     print_result(json);
   else if (!arguments.quiet)
-    print_text(report::accuracy_table(accuracy) +
+    print_text((arguments.table ? report::accuracy_table(accuracy) : report::accuracy_summary(accuracy)) +
                (failure ? "files: none, they cannot be written\n"
                         : "files: " + folder.string() + "/accuracy.json, accuracy.html\n"));
   if (failure) std::rethrow_exception(failure);

@@ -11,7 +11,7 @@ namespace carousel::app {
 
 struct AccuracyArguments : ConfigArguments {  // without a configuration: kBuiltInConfig
   std::filesystem::path out;
-  bool json = false, quiet = false, force = false;
+  bool json = false, table = false, quiet = false, force = false;
   std::size_t rays = 50000;       ///< most rays of the scene
   std::size_t hard_rays = 20000;  ///< rays of each hard case
   int repetitions = 5;
@@ -28,7 +28,8 @@ inline constexpr const char* kBuiltInConfig =
     "schema_version: 1\nscene: {builtin: instances}\nimage: {width: 96, height: 96, samples: 2}\n";
 
 /// `carousel accuracy`: compares every sensible combination of levels with exact arithmetic, on the scene and on the
-/// built-in hard ones; prints a table, writes accuracy.json and accuracy.html. Returns the exit status.
+/// built-in hard ones; prints five lines, or with `table` all tables, and writes accuracy.json and accuracy.html.
+/// Returns the exit status.
 int accuracy_command(const AccuracyArguments& arguments);
 
 }  // namespace carousel::app

@@ -7,7 +7,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
-#include "report/text/number_text.h"
+#include "report/accuracy/level_text.h"
 
 namespace carousel::report {
 
@@ -17,10 +17,6 @@ namespace {
 constexpr double kSameCycles = 0.01;
 /// Part by which accuracies and areas may differ and be equal.
 constexpr double kSameAccuracy = 0.1, kSameArea = 0.01;
-
-std::string levels_text(const AccuracyRow& row) {
-  return fmt::format("{} + {} + {}", row.triangle, row.box, row.transform);
-}
 
 bool surely_cheaper(const Spread& a, const Spread& b) {
   return cost_ratio(a, b).high < 1;
@@ -79,20 +75,6 @@ bool any_row(const AccuracyRow&) {
   return true;
 }
 
-std::string cost_text(const AccuracyRow& row, Clock clock) {
-  const double cost = row.cost(clock)->median;
-  return clock == Clock::kHost ? fmt::format("{:.0f} ns a ray", cost) : fmt::format("{:.3g} cycles a ray", cost);
-}
-
-/// A price in percent, and its interval.
-std::string over_text(const CostRatio& over) {
-  return fmt::format("{:+.0f} %", 100 * (over.ratio - 1));
-}
-std::string interval_text(const CostRatio& over) {
-  if (over.low == over.high) return "";
-  return fmt::format(" ({:+.1f} to {:+.1f} %)", 100 * (over.low - 1), 100 * (over.high - 1));
-}
-
 /// The other safe rows that cost the same, and how the choice between them was made.
 std::string ties_text(const std::vector<AccuracyRow>& rows, Clock clock, const AccuracyRow& chosen) {
   std::string out;
@@ -108,12 +90,6 @@ std::string ties_text(const std::vector<AccuracyRow>& rows, Clock clock, const A
       "more "
       "accurate t, then the smaller units, then the simpler tests.",
       out);
-}
-
-std::string errors_text(const AccuracyRow& row) {
-  return fmt::format("leaks {}, answers {} of {} rays of the scene and {} of the hard cases wrongly",
-                     grouped(row.leaks), grouped(row.scene.wrong()), grouped(row.scene.rays),
-                     grouped(row.wrong() - row.scene.wrong()));
 }
 
 std::string sentences(const std::vector<AccuracyRow>& rows, Clock clock) {
@@ -212,6 +188,11 @@ void mark_frontier(std::vector<AccuracyRow>& rows) {
 
 std::optional<std::size_t> recommended(const std::vector<AccuracyRow>& rows, Clock clock) {
   const AccuracyRow* const row = best_of_equals(rows, clock, is_safe);
+  return row == nullptr ? std::nullopt : std::optional(static_cast<std::size_t>(row - rows.data()));
+}
+
+std::optional<std::size_t> cheapest_level(const std::vector<AccuracyRow>& rows, Clock clock) {
+  const AccuracyRow* const row = cheapest(rows, clock, any_row);
   return row == nullptr ? std::nullopt : std::optional(static_cast<std::size_t>(row - rows.data()));
 }
 

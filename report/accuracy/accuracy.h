@@ -156,6 +156,8 @@ void mark_frontier(std::vector<AccuracyRow>& rows);
 /// percentile, within a tenth); of these one with the smallest units, and of these the first, which is the simplest.
 /// accuracy_verdict() names the ties.
 std::optional<std::size_t> recommended(const std::vector<AccuracyRow>& rows, Clock clock);
+/// The row of the least cost, whatever it gets wrong; empty if no cost was measured by this clock.
+std::optional<std::size_t> cheapest_level(const std::vector<AccuracyRow>& rows, Clock clock);
 /// The sentences for `verdict`, for the host and for hardware: the recommended row, the price over the cheapest of all,
 /// and what that one and the cheapest that loses nothing but slivers get wrong.
 std::string accuracy_verdict(const std::vector<AccuracyRow>& rows);

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "report/accuracy/accuracy_summary.h"
 #include "report/schema/document_version.h"
 #include "report/text/number_text.h"
 
@@ -182,11 +183,7 @@ nlohmann::ordered_json row_json(const AccuracyRow& row, const std::vector<HardCa
 }  // namespace
 
 std::string accuracy_table(const Accuracy& a) {
-  std::string out = fmt::format(
-      "{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}, {} seeds\n\n", a.scene,
-      grouped(a.triangles), grouped(a.instances), grouped(a.rays), a.repetitions, a.seed, a.width, a.height, a.samples,
-      a.seeds);
-  if (a.incomplete) out = "INCOMPLETE: interrupted; what follows is what was done\n" + out;
+  std::string out = accuracy_head(a) + "\n";
   level_lines(a, out);
   hard_lines(a, out);
   spawn_lines(a, out);

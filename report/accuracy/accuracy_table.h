@@ -8,7 +8,7 @@
 
 namespace carousel::report {
 
-/// For a terminal: levels against time and errors, spawn offsets, samples, and the verdict.
+/// For a terminal, all of it: levels against time and errors, hard cases, spawn offsets, samples, and the verdict.
 std::string accuracy_table(const Accuracy& accuracy);
 
 /// accuracy.json: all of it, with units in the names.

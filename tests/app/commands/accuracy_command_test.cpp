@@ -142,7 +142,7 @@ TEST(AccuracyCommand, MeasuresWhatEachLevelGetsWrongAndCosts) {
   const Program program;
   program.write("a.yaml", kConfig);
   const Outcome outcome =
-      program.run({"accuracy", "a.yaml", "--rays", "2000", "--hard-rays", "4000", "--repetitions", "2"});
+      program.run({"accuracy", "a.yaml", "--table", "--rays", "2000", "--hard-rays", "4000", "--repetitions", "2"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json report = Json::parse(program.read("out/a/accuracy.json"));
   finds_the_leaks_of_the_fast_level_and_none_of_the_watertight_ones(report);
@@ -166,7 +166,7 @@ TEST(AccuracyCommand, HonoursTheConfiguredPlanesAndBundles) {
   const Program program;
   program.write("a.yaml", std::string(kConfig) + "cull_planes: {count: 2}\nbundles: {size: 4}\n");
   const Outcome outcome =
-      program.run({"accuracy", "a.yaml", "--rays", "300", "--hard-rays", "100", "--repetitions", "1"});
+      program.run({"accuracy", "a.yaml", "--table", "--rays", "300", "--hard-rays", "100", "--repetitions", "1"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json report = Json::parse(program.read("out/a/accuracy.json"));
   const Json& base = level(report, "watertight", "conservative", "two_step");

@@ -1,9 +1,12 @@
 #include "report/accuracy/accuracy.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "report/accuracy/accuracy_summary.h"
 
 namespace carousel::report {
 namespace {
@@ -65,6 +68,32 @@ TEST(AccuracyFrontier, HardwareHasAClockOfItsOwn) {
   EXPECT_TRUE(rows[1].on_frontier(Clock::kHardware));
   EXPECT_THAT(accuracy_verdict(rows), testing::HasSubstr("For hardware"));
   EXPECT_THAT(accuracy_verdict(rows), testing::HasSubstr("18.8 cycles a ray, +127 % over the cheapest"));
+}
+
+Accuracy with_rows(std::vector<AccuracyRow> rows) {
+  Accuracy a;
+  a.rows = std::move(rows);
+  for (const Clock clock : kClocks) a.recommended[static_cast<std::size_t>(clock)] = recommended(a.rows, clock);
+  return a;
+}
+
+TEST(AccuracySummary, SaysOnFiveLinesWhatSafetyCostsAndWhatGoesWrongWithout) {
+  const std::string text = accuracy_summary(
+      with_rows({with_cycles(row("fast", 10, 5, false), 2, 1), with_cycles(row("slow", 30, 0, true), 3, 1)}));
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
+  EXPECT_THAT(text, testing::HasSubstr("host     the safe level takes 30 ns a ray, +200 % over the cheapest\n"));
+  EXPECT_THAT(text, testing::HasSubstr("machine  the safe level takes 3 cycles a ray, +50 % over the cheapest"));
+  EXPECT_THAT(text, testing::HasSubstr("without  fast + box + two_step leaks 0, answers 5 of 100 rays"));
+  EXPECT_THAT(text, testing::HasSubstr("advice   accuracy: {triangle: slow, box: box, transform: two_step}\n"));
+}
+
+TEST(AccuracySummary, KnowsWhatWasNotMeasuredAndWhatIsNotSafe) {
+  EXPECT_THAT(accuracy_summary(with_rows({row("only", 10, 0, true)})),
+              testing::AllOf(testing::HasSubstr("host     the safe level takes 10 ns a ray and is the cheapest\n"),
+                             testing::HasSubstr("machine  not measured"), testing::HasSubstr("} on this host\n")));
+  EXPECT_THAT(accuracy_summary(with_rows({row("only", 10, 1, false)})),
+              testing::AllOf(testing::HasSubstr("no level is safe here"), testing::HasSubstr("advice   none")));
+  EXPECT_EQ(accuracy_summary({}).find("advice"), std::string::npos);  // interrupted before the first level
 }
 
 TEST(AccuracyRecommendation, OfEqualCostTheMoreAccurateThenTheSmallerUnit) {
