@@ -252,7 +252,9 @@ int sweep_command(const SweepArguments& arguments) {
 
   const std::vector<Axis> axes = axes_of(arguments, base);
   for (const Axis& axis : axes) rows.keys.insert(rows.keys.end(), axis.keys.begin(), axis.keys.end());
-  if (!arguments.pareto.empty()) parse_goals(rows, arguments.pareto);
+  if (!arguments.pareto.empty())
+    for (const Goal& goal : parse_goals(rows, arguments.pareto))
+      rows.require_result(goal.column, base, "--pareto " + arguments.pareto);
   PointMaker maker(setup.source, setup.config.parent_path(), arguments.sets);
   std::vector<SweepPoint> points = make_points(maker, choices_of(arguments, axes));
   for (std::size_t i = shard.part; i < points.size(); i += shard.of)

@@ -81,18 +81,19 @@ Json all_bytes(const Json& report) {
 }  // namespace
 
 std::vector<ResultColumn> result_columns(const std::vector<std::string>& paths) {
-  std::vector<ResultColumn> out{{"cycles", "engine.cycles"},
-                                {"rays_per_kilocycle", "throughput.whole.rays_per_kilocycle", true},
-                                {"mrays_per_second", "throughput.whole.mrays_per_second_at_clock", true},
-                                {"limits", "bottleneck.limits"},
-                                {"gain", ""},
-                                {"bytes", ""},
+  using enum ResultOf;
+  std::vector<ResultColumn> out{{"cycles", "engine.cycles", false, kCycleRun},
+                                {"rays_per_kilocycle", "throughput.whole.rays_per_kilocycle", true, kCycleRun},
+                                {"mrays_per_second", "throughput.whole.mrays_per_second_at_clock", true, kCycleRun},
+                                {"limits", "bottleneck.limits", false, kCycleRun},
+                                {"gain", "", false, kCycleRun},
+                                {"bytes", "", false, kCycleRun},
                                 {"tests_per_ray", "throughput.tests_per_ray"},
-                                {"nj_per_ray", "energy.nj_per_ray"},
-                                {"mm2", "area.mm2"},
-                                {"mrays_per_second_per_mm2", "area.mrays_per_second_per_mm2", true},
-                                {"host_rays_per_second", "host.rays_per_second", true}};
-  for (const std::string& path : paths) out.push_back({path, path, path.find("rays_per") != path.npos});
+                                {"nj_per_ray", "energy.nj_per_ray", false, kCostProfile},
+                                {"mm2", "area.mm2", false, kCostProfile},
+                                {"mrays_per_second_per_mm2", "area.mrays_per_second_per_mm2", true, kCostProfile},
+                                {"host_rays_per_second", "host.rays_per_second", true, kNativeRun}};
+  for (const std::string& path : paths) out.push_back({path, path, path.find("rays_per") != path.npos, kEveryRun});
   return out;
 }
 
@@ -117,6 +118,23 @@ std::size_t SweepRows::column(const std::string& name, const std::string& option
                       name,
                       fmt::format("no such result{}; known are {}; --result adds one of the report",
                                   near ? ", did you mean " + *near + "?" : "", fmt::join(names, ", "))}});
+}
+
+void SweepRows::require_result(std::size_t column, const Config& base, const std::string& option) const {
+  const ResultOf of = columns[column].of;
+  const auto require = [&](const std::string& key, bool met, const std::string& expected, const std::string& found) {
+    if (met || std::find(keys.begin(), keys.end(), key) != keys.end()) return;
+    throw ConfigError({{{option, 0, 0},
+                        key,
+                        fmt::format("{} is a result of runs with {}={}; expected --set {}={}, found {}",
+                                    columns[column].name, key, expected, key, expected, found)}});
+  };
+  const EngineKind kind = base.engine.kind;
+  const std::string engine{enum_name(kind)};
+  if (of == ResultOf::kNativeRun) require("engine.kind", kind == EngineKind::kNative, "native", engine);
+  if (of == ResultOf::kCycleRun || of == ResultOf::kCostProfile)
+    require("engine.kind", kind == EngineKind::kCycle, "cycle", engine);
+  if (of == ResultOf::kCostProfile) require("energy.profile", base.energy.profile != CostProfile::kNone, "n7", "none");
 }
 
 std::optional<double> SweepRows::number(const SweepRow& row, std::size_t column) const {

@@ -14,11 +14,15 @@
 
 namespace carousel::app {
 
+/// What a run has to do for its report to have a result.
+enum class ResultOf { kEveryRun, kNativeRun, kCycleRun, kCostProfile };
+
 /// A number or a name that is taken from the report of each point.
 struct ResultColumn {
   std::string name;
   std::string path;  ///< in the report; empty: a result that is computed
   bool greater_is_better = false;
+  ResultOf of = ResultOf::kEveryRun;
 };
 
 /// The results that every sweep shows, and those of `--result`, paths as in throughput.whole.rays_per_kilocycle.
@@ -43,6 +47,9 @@ struct SweepRows {
 
   /// The index of a column. Throws ConfigError, which names the option that asks for it.
   std::size_t column(const std::string& name, const std::string& option) const;
+  /// Throws a ConfigError that names the key to set if no point will have the result of the column: `base` is the
+  /// configuration without the keys that vary.
+  void require_result(std::size_t column, const Config& base, const std::string& option) const;
   /// The number in a column; absent for a point without it.
   std::optional<double> number(const SweepRow& row, std::size_t column) const;
   /// Leaves out the columns that no point has.

@@ -58,20 +58,34 @@ std::string columns_text(std::vector<std::vector<std::string>> columns, std::siz
   return out;
 }
 
-std::string rows_text(const SweepRows& rows, const std::vector<std::size_t>& chosen, std::size_t width) {
+/// The columns of results with those of the goals first, which are shown however narrow the terminal is.
+std::vector<std::size_t> column_order(const SweepRows& rows, const std::vector<Goal>& goals) {
+  std::vector<std::size_t> order;
+  for (const Goal& goal : goals) order.push_back(goal.column);
+  for (std::size_t i = 0; i < rows.columns.size(); ++i)
+    if (std::find(order.begin(), order.end(), i) == order.end()) order.push_back(i);
+  return order;
+}
+
+std::string rows_text(const SweepRows& rows, const std::vector<std::size_t>& chosen, const std::vector<Goal>& goals,
+                      std::size_t width) {
   std::vector<std::vector<std::string>> columns;
   for (std::size_t k = 0; k < rows.keys.size(); ++k) {
     auto& column = columns.emplace_back(1, short_name(rows.keys[k], rows.keys));
     for (const std::size_t row : chosen) column.push_back(rows.rows[row].point.keys[k].second);
   }
-  for (std::size_t i = 0; i < rows.columns.size(); ++i) {
+  const std::vector<std::size_t> order = column_order(rows, goals);
+  for (const std::size_t i : order) {
     auto& column = columns.emplace_back(1, rows.columns[i].name);
     for (const std::size_t row : chosen) {
       const SweepRow& r = rows.rows[row];
-      column.push_back(i < r.results.size() ? shown(r.results[i]) : i == 0 ? (r.error ? "failed" : "missing") : "-");
+      const std::string none = i != order.front() ? "-" : r.error ? "failed" : "missing";
+      column.push_back(i < r.results.size() ? shown(r.results[i]) : none);
     }
   }
-  return columns.empty() ? "" : columns_text(std::move(columns), width, rows.keys.size() + 1);
+  return columns.empty()
+             ? ""
+             : columns_text(std::move(columns), width, rows.keys.size() + std::max<std::size_t>(1, goals.size()));
 }
 
 std::string effects_text(const SweepRows& rows, std::size_t column, std::size_t width) {
@@ -108,11 +122,11 @@ std::string sweep_table(const SweepRows& rows, const std::vector<Goal>& goals, s
     out += fmt::format("The best {} of {} points by {}:\n", kMostRows, order.size(), rows.columns[goal.column].name);
     order.resize(kMostRows);
   }
-  out += rows_text(rows, order, width);
+  out += rows_text(rows, order, goals, width);
   if (!goals.empty()) {
     out += fmt::format("\nPareto front of {} and {}:\n", rows.columns[goals[0].column].name,
                        rows.columns[goals[1].column].name);
-    out += rows_text(rows, pareto_front(rows, goals), width);
+    out += rows_text(rows, pareto_front(rows, goals), goals, width);
   }
   if (rows.columns.empty()) return out;
   if (const std::string effects = effects_text(rows, goal.column, width); !effects.empty())

@@ -166,5 +166,26 @@ TEST_F(SweepCommand, TheTableFitsAndNamesItsResults) {
     EXPECT_LE(end - begin, 80u) << outcome.out.substr(begin, end - begin);
 }
 
+TEST_F(SweepCommand, GoalsThatNoPointWillHaveAreRefusedBeforeTheFirstPoint) {
+  const Outcome costs = sweep({"--vary", "topology.resources=2,4", "--pareto", "cycles,mm2"});
+  EXPECT_EQ(costs.status, 2);
+  EXPECT_THAT(costs.err, HasSubstr("mm2 is a result of runs with energy.profile=n7; expected --set energy.profile=n7"));
+  const Outcome native =
+      sweep({"--vary", "topology.resources=2,4", "--pareto", "cycles,bytes", "--set", "engine.kind=native"});
+  EXPECT_EQ(native.status, 2);
+  EXPECT_THAT(native.err, HasSubstr("cycles is a result of runs with engine.kind=cycle"));
+  EXPECT_FALSE(std::filesystem::exists(program_.folder() / "out/a/sweep.json"));
+}
+
+TEST_F(SweepCommand, TheChosenResultsAreShownHoweverNarrowTheTerminalIs) {
+  setenv("COLUMNS", "60", 1);
+  const Outcome outcome = program_.run(
+      {"sweep", "a.yaml", "--vary", "topology.resources=2,4", "--set", "energy.profile=n7", "--pareto", "cycles,mm2"});
+  unsetenv("COLUMNS");
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string front = outcome.out.substr(outcome.out.find("Pareto front"));
+  EXPECT_THAT(front.substr(0, front.find("no room here")), HasSubstr("mm2\n"));
+}
+
 }  // namespace
 }  // namespace carousel::sweep_command_test
