@@ -51,11 +51,12 @@ void set_up(Camera& camera, const CameraConfig& config) {
 }  // namespace
 
 Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
-                 const ImageChoice& images, const View& view) {
+                 const ImageChoice& images, const View& view, Executor* executor) {
   if (config.file.empty() == !config.builtin.has_value()) {
     throw ConfigError("scene", "expected exactly one of file and builtin");
   }
-  Scene scene = config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn, images);
+  Scene scene =
+      config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn, images, executor);
   if (config.sky || !config.builtin) {
     const SkyConfig sky = config.sky.value_or(SkyConfig{});
     scene.sky.radiance = sky.color * sky.strength;

@@ -1,6 +1,8 @@
 #include "app/commands/inspect_command.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -13,6 +15,7 @@
 #include "core/config/load/load.h"
 #include "core/config/schema.h"
 #include "core/system/error.h"
+#include "core/system/executor.h"
 #include "core/types/enum_names.h"
 #include "report/text/number_text.h"
 #include "scene/load_scene.h"
@@ -156,7 +159,8 @@ int inspect_command(const InspectArguments& arguments) {
   const ShadingConfig::Effects& choice = located.config.shading.effects;
   scene::Scene scene = scene::load_scene(
       located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); },
-      [&](const scene::Scene& s) { return shading::images_read(s, choice); }, view_of(located.config));
+      [&](const scene::Scene& s) { return shading::images_read(s, choice); }, view_of(located.config),
+      make_executor(std::max(1u, std::thread::hardware_concurrency())).get());
   shading::strip_effects(scene, choice);
   report::Shading shading;
   add_effects(shading, scene, located.config);

@@ -87,7 +87,7 @@ void load_scene(Prepared& p) {
         phase.emplace("textures");
         return shading::images_read(s, p.config().shading.effects);
       },
-      view_of(p.config()));
+      view_of(p.config()), make_executor(p.threads_beside).get());
   shading::strip_effects(p.scene, p.config().shading.effects);
   std::uint64_t image_bytes = 0;
   for (const scene::Image& image : p.scene.images) image_bytes += image.rgba.size();

@@ -21,8 +21,10 @@ std::uint64_t MemoryBudget::of_process() {
 }
 
 void MemoryBudget::take(std::uint64_t bytes) {
-  if (bytes > left_) throw std::length_error(refusal(bytes));
-  left_ -= bytes;
+  std::uint64_t left = left_.load(std::memory_order_relaxed);
+  do {
+    if (bytes > left) throw std::length_error(refusal(bytes, left));
+  } while (!left_.compare_exchange_weak(left, left - bytes, std::memory_order_relaxed));
 }
 
 MemoryBudget::Loan MemoryBudget::lend(std::uint64_t bytes) {
@@ -30,9 +32,9 @@ MemoryBudget::Loan MemoryBudget::lend(std::uint64_t bytes) {
   return Loan(this, bytes);
 }
 
-std::string MemoryBudget::refusal(std::uint64_t bytes) const {
+std::string MemoryBudget::refusal(std::uint64_t bytes, std::uint64_t left) const {
   return "needs " + std::to_string(bytes / kMib + (bytes % kMib != 0 ? 1 : 0)) + " MiB of memory; " +
-         std::to_string(left_ / kMib) + " of " + std::to_string(allowed_ / kMib) +
+         std::to_string(left / kMib) + " of " + std::to_string(allowed_ / kMib) +
          " MiB are left (engine.memory_limit_mib)";
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <string>
 #include <utility>
@@ -8,7 +9,7 @@ namespace carousel {
 
 /// The bytes that a reader of foreign data may allocate. The reader asks before each allocation whose size the data
 /// announces, so that a small file that announces much is refused before it costs anything, however dense an honest
-/// file may be. Not for several threads at once.
+/// file may be. Several threads may ask at once.
 class MemoryBudget {
  public:
   /// Bytes that go back to the budget when the object ends.
@@ -22,7 +23,8 @@ class MemoryBudget {
       return *this;
     }
     ~Loan() {
-      if (budget_ != nullptr) budget_->left_ += bytes_;
+      // Relaxed: the number is all that threads share here.
+      if (budget_ != nullptr) budget_->left_.fetch_add(bytes_, std::memory_order_relaxed);
     }
 
    private:
@@ -47,12 +49,13 @@ class MemoryBudget {
   /// Takes bytes for as long as the result lives, which must not be longer than the budget. Throws as take() does.
   [[nodiscard]] Loan lend(std::uint64_t bytes);
 
-  std::uint64_t left() const { return left_; }
+  std::uint64_t left() const { return left_.load(std::memory_order_relaxed); }
 
  private:
-  std::string refusal(std::uint64_t bytes) const;
+  std::string refusal(std::uint64_t bytes, std::uint64_t left) const;
 
-  std::uint64_t allowed_, left_;
+  std::uint64_t allowed_;
+  std::atomic<std::uint64_t> left_;
 };
 
 }  // namespace carousel

@@ -55,7 +55,7 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& m
 }
 
 Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,
-             const WarningSink& warn, const ImageChoice& choice, MemoryBudget& memory) {
+             const WarningSink& warn, const ImageChoice& choice, Executor* executor, MemoryBudget& memory) {
   GltfDocument document = parse_document(bytes, file);
   check_extensions(document, warn);
   check_schema(document, warn);
@@ -80,7 +80,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
   }
   const bool empty =
       std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
-  read_images(document, resources, model, budget, images, choice, scene);
+  read_images(document, resources, model, budget, images, choice, executor, scene);
   if (empty) {
     // Other faults come first: they may be why nothing is shown.
     for (std::size_t i = 0; i < model.model.meshes.size(); ++i) {
@@ -101,7 +101,8 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
 
 }  // namespace
 
-Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const ImageChoice& images) {
+Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const ImageChoice& images,
+                Executor* executor) {
   const std::string name = file.string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw SceneError(name, "", "no such file");
@@ -114,7 +115,7 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, cons
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw SceneError(name, "", "reading failed");
-    return import(bytes, name, file.parent_path(), warn, images, memory);
+    return import(bytes, name, file.parent_path(), warn, images, executor, memory);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   } catch (const std::length_error& too_much) {
@@ -126,7 +127,7 @@ Scene load_gltf_within(std::uint64_t budget_bytes, std::span<const std::byte> by
                        const WarningSink& warn, const ImageChoice& images) {
   try {
     MemoryBudget memory(budget_bytes);
-    return import(bytes, name, std::nullopt, warn, images, memory);
+    return import(bytes, name, std::nullopt, warn, images, nullptr, memory);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   }

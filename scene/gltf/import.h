@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 
+#include "core/system/executor.h"
 #include "scene/model/image_choice.h"
 #include "scene/model/scene.h"
 #include "scene/model/warnings.h"
@@ -14,7 +15,9 @@ namespace carousel::scene {
 /// Reads a glTF 2.0 file (.gltf or .glb, told apart by content). The scene's sky is black; the caller sets
 /// it. Images that `images` excludes are not opened; without `images` every image that a material names is decoded. For
 /// any contents of the file the function returns a scene or throws a SceneError that names file, JSON path and error.
-Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {}, const ImageChoice& images = {});
+/// Images are decoded on the threads of `executor`, if there is one, and else by the caller.
+Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn = {}, const ImageChoice& images = {},
+                Executor* executor = nullptr);
 
 /// Reads a glTF 2.0 file from memory, as load_gltf() does. `name` stands for the file in messages. Buffers and images
 /// must be embedded.

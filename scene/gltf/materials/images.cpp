@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <vector>
 
 #include "scene/images/image_decode.h"
 
@@ -33,11 +34,31 @@ Image read_image(const GltfDocument& document, const GltfResources& resources, c
   return decode(document, budget, index, buffer.subspan(view.byteOffset, view.byteLength));
 }
 
+/// Reads images on several threads, and returns those that failed: by themselves they may fit a memory that was too
+/// small for all of them, and the first one in the file that does not is the error, whatever thread came first.
+template <class Read>
+std::vector<std::size_t> read_at_once(Executor& executor, const std::vector<std::size_t>& images, const Read& read) {
+  std::vector<char> failed(images.size(), 0);
+  executor.parallel_for(images.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      try {
+        read(images[i]);
+      } catch (const std::exception&) {
+        failed[i] = 1;
+      }
+    }
+  });
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < images.size(); ++i)
+    if (failed[i] != 0) out.push_back(images[i]);
+  return out;
+}
+
 }  // namespace
 
 void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
                  const ImportBudget& budget, const std::vector<std::size_t>& file_images, const ImageChoice& choice,
-                 Scene& scene) {
+                 Executor* executor, Scene& scene) {
   scene.images.resize(file_images.size());
   for (std::size_t i = 0; i < file_images.size(); ++i) {
     const Json& image = document.json["images"][file_images[i]];
@@ -45,12 +66,16 @@ void read_images(const GltfDocument& document, const GltfResources& resources, c
         image.value("name", image.contains("bufferView") ? "" : image.value("uri", "").substr(0, 64));
   }
   const std::vector<bool> wanted = choice ? choice(scene) : std::vector<bool>(file_images.size(), true);
-  for (std::size_t i = 0; i < file_images.size(); ++i) {
-    if (!wanted.at(i)) continue;
-    std::string name = std::move(scene.images[i].name);
-    scene.images[i] = read_image(document, resources, model.model, budget, file_images[i]);
-    scene.images[i].name = std::move(name);
-  }
+  std::vector<std::size_t> left;
+  for (std::size_t i = 0; i < file_images.size(); ++i)
+    if (wanted.at(i)) left.push_back(i);
+  const auto read = [&](std::size_t i) {
+    Image image = read_image(document, resources, model.model, budget, file_images[i]);
+    image.name = std::move(scene.images[i].name);
+    scene.images[i] = std::move(image);
+  };
+  if (executor != nullptr && left.size() > 1) left = read_at_once(*executor, left, read);
+  for (const std::size_t i : left) read(i);
 }
 
 }  // namespace carousel::scene

@@ -4,6 +4,8 @@
 
 #include <unistd.h>
 
+#include "core/system/executor.h"
+#include "tests/scene/gltf/encode_image.h"
 #include "tests/scene/gltf/gltf_builder.h"
 
 namespace carousel::scene {
@@ -122,6 +124,38 @@ TEST_F(GltfFiles, MissingAndTruncatedBuffersAreNamed) {
   } catch (const SceneError& e) {
     EXPECT_EQ(e.file(), file);
   }
+}
+
+// The pictures of a model are those of a single thread, and its error is that of the first one in the file.
+TEST_F(GltfFiles, ImagesAreDecodedAtOnceWithTheSameResult) {
+  constexpr int kImages = 24;
+  GltfBuilder b = GltfBuilder::square();
+  for (int i = 0; i < kImages; ++i) {
+    const auto shade = static_cast<unsigned char>(i);
+    b.push("images", {{"bufferView", b.view(encode_png(64, 64, 3, std::vector<unsigned char>(64 * 64 * 3, shade)))},
+                      {"mimeType", "image/png"},
+                      {"name", "shade " + std::to_string(i)}});
+    b.push("textures", {{"source", i}});
+    b.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", i}}}}}});
+    b.mesh({{"POSITION", 0}}, 1, {{"material", i}});
+  }
+  write("a.gltf", b.text());
+  const auto executor = make_jthread_executor(4);
+  const Scene scene = load_gltf(folder_ / "a.gltf", {}, {}, executor.get());
+  ASSERT_EQ(scene.images.size(), std::size_t{kImages});
+  for (int i = 0; i < kImages; ++i) {
+    const Image& image = scene.images[static_cast<std::size_t>(i)];
+    EXPECT_EQ(image.name, "shade " + std::to_string(i));
+    ASSERT_EQ(image.rgba.size(), std::size_t{64 * 64 * 4});
+    EXPECT_EQ(image.rgba[0], i);
+  }
+  for (const int broken : {7, 19, 23}) {
+    const Json& view = b.json["bufferViews"][b.json["images"][broken]["bufferView"].get<std::size_t>()];
+    b.binary[view["byteOffset"].get<std::size_t>() + 1] = std::byte{0};
+  }
+  write("b.gltf", b.text());
+  for (int again = 0; again < 10; ++again)
+    expect_scene_error([&] { load_gltf(folder_ / "b.gltf", {}, {}, executor.get()); }, "/images/7", "the image is");
 }
 
 TEST_F(GltfFiles, FoldersAndMissingFilesAreRefused) {
