@@ -32,6 +32,7 @@
 #include "report/run/report_json.h"
 #include "report/run/report_table.h"
 #include "report/run/traffic_table.h"
+#include "report/text/singular.h"
 
 namespace carousel::app {
 
@@ -42,7 +43,7 @@ void print_report(const RunArguments& arguments, const report::Report& report, c
   if (arguments.json)
     print_result(report::json_text(report::sealed(report::report_json(report))) + "\n");
   else if (!arguments.quiet)
-    print_text(table + "files        " + files + "\n");
+    print_text(report::singular(table) + "files        " + files + "\n");
 }
 
 /// Makes the files of a run appear, and prints its result: also where files cannot be written, which is an error after

@@ -8,12 +8,19 @@
 #include <nlohmann/json.hpp>
 
 #include "report/run/terminal_words.h"
+#include "report/text/singular.h"
 #include "tests/app/support/program.h"
 
 namespace carousel::terminal_table_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// The noun that may follow a number, with or without a word before it, as a pattern for one of them and for many.
+std::string noun_pattern(const std::string& many) {
+  const std::string one = report::singular("1 " + many).substr(2);
+  return one == many ? many : "(" + many + "|" + one + ")";
+}
 
 /// "N rays at *" as a pattern: numbers with their units, words of any length.
 std::regex pattern_of(const std::string& text) {
@@ -23,7 +30,13 @@ std::regex pattern_of(const std::string& text) {
                        (i + 1 == text.size() || !std::isalpha(static_cast<unsigned char>(text[i + 1])));
     if (text[i] == 'N' && alone) {
       out += R"([+-]?[0-9][0-9,.]*(e[+-]?[0-9]+)?( min [0-9.]+ s| ?(%|[KMGT]?i?B|ns|us|ms|s|[kMGT]))?)";
-      if (i + 1 < text.size() && text[i + 1] == ' ') out += " ?", ++i;  // "1.5 krays/s"
+      if (i + 1 >= text.size() || text[i + 1] != ' ') continue;
+      out += " ?", ++i;  // "1.5 krays/s"
+      std::smatch noun;
+      const std::string rest = text.substr(i + 1);
+      if (!std::regex_search(rest, noun, std::regex("^((inner|more|shader) )?[a-z]+s(?![a-z/_-])"))) continue;
+      out += noun_pattern(noun.str());
+      i += noun.str().size();
     } else if (text[i] == '*') {
       out += ".*";
     } else if (std::string_view(".()+/[]{}^$|?\\").find(text[i]) != std::string_view::npos) {
