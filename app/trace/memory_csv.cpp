@@ -100,7 +100,7 @@ class MemoryReader {
 }  // namespace
 
 void write_memory_csv(AtomicFile& file, const ringbus::MemoryLog& requests, bool complete) {
-  file.write(std::string(kHeader) + "\n");
+  file.write(fmt::format("{}\n", kHeader));
   for (const ringbus::MemoryRequest& request : requests)
     file.write(
         fmt::format("{},{},{},{}\n", request.cycle, request.write ? "write" : "read", request.address, request.bytes));
