@@ -33,9 +33,11 @@ std::string price_text(const Accuracy& a, Clock clock) {
   if (row == nullptr) return fmt::format("no level is safe here; the cheapest takes {}", cost_text(*least, clock));
   if (row == least) return fmt::format("the safe level takes {} and is the cheapest", cost_text(*row, clock));
   const CostRatio over = cost_ratio(*row->cost(clock), *least->cost(clock));
-  return fmt::format("the safe level takes {}, {} the cheapest{}{}", cost_text(*row, clock),
-                     over.ties() ? "as" : over_text(over) + " over", interval_text(over),
-                     over.ties() ? ", which cannot be told apart" : "");
+  if (over.ties())
+    return fmt::format("the safe level takes {}, and its price over the cheapest cannot be told from none{}",
+                       cost_text(*row, clock), interval_text(over));
+  return fmt::format("the safe level takes {}, {} over the cheapest{}", cost_text(*row, clock), over_text(over),
+                     interval_text(over));
 }
 
 /// The same for the machine as it is configured, where other parts may hide the price.

@@ -39,9 +39,9 @@ TEST(TrafficSink, TakesAFlitACycleAndCountsThoseOfTheWindow) {
 /// Resource 1 of a ring, with the wires of acknowledgements beside it.
 struct CreditsOfARing {
   Config config = [] {
-    Config out = traffic_config(TopologyShape::kRing, 4, TrafficConfig::Pattern::kUniform, 0.5, 10);
-    out.topology.flow = Flow::kCredits;
-    return out;
+    Config with_depth = traffic_config(TopologyShape::kRing, 4, TrafficConfig::Pattern::kUniform, 0.5, 10);
+    with_depth.topology.flow = Flow::kCredits;
+    return with_depth;
   }();
   Topology topology{config.topology};
   Channel<TrafficAck> in, out;
