@@ -2,7 +2,8 @@
 
 #include <filesystem>
 
-#include "core/config/config.h"
+#include "core/config/fields/camera.h"
+#include "core/config/fields/scene.h"
 #include "scene/gltf/import.h"
 #include "scene/model/scene.h"
 #include "scene/model/warnings.h"

@@ -4,7 +4,7 @@
 
 #include "accel/box/bundle.h"
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
 #include "core/statistics/intersection_counts.h"
 
 namespace carousel::accel {

@@ -1,7 +1,8 @@
 #pragma once
 
 #include "accel/box/bundle.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
+#include "core/config/fields/bundles.h"
 #include "core/types/aabb.h"
 
 namespace carousel::accel {

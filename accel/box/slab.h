@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "accel/structure/node.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/aabb.h"
 #include "core/types/ray.h"
 

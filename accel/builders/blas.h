@@ -6,7 +6,7 @@
 #include "accel/builders/mesh_pieces.h"
 #include "accel/builders/wide_collapse.h"
 #include "accel/structure/node.h"
-#include "core/config/config.h"
+#include "core/config/fields/bvh.h"
 #include "core/system/executor.h"
 #include "core/types/aabb.h"
 #include "scene/model/opacity.h"

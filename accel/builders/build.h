@@ -1,7 +1,9 @@
 #pragma once
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
+#include "core/config/fields/bvh.h"
+#include "core/config/fields/cull_planes.h"
 #include "core/system/executor.h"
 #include "scene/model/scene.h"
 

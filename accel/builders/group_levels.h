@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/bvh.h"
 #include "core/system/executor.h"
 #include "scene/model/scene.h"
 

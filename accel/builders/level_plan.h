@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "scene/model/scene.h"
 
 namespace carousel::accel {

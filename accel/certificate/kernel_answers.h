@@ -5,7 +5,7 @@
 #include <string>
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/aabb.h"
 #include "core/types/ray.h"
 #include "scene/model/scene.h"

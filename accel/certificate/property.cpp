@@ -1,6 +1,6 @@
 #include "accel/certificate/property.h"
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/enum_names.h"
 
 namespace carousel::accel {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "accel/certificate/case_random.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 
 namespace carousel::accel {
 

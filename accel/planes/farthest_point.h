@@ -1,7 +1,7 @@
 #pragma once
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/cull_planes.h"
 #include "core/types/vec.h"
 
 namespace carousel::accel {

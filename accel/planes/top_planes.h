@@ -8,7 +8,7 @@
 #include "accel/planes/oriented_box.h"
 #include "accel/planes/plane_candidates.h"
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/cull_planes.h"
 #include "scene/model/scene.h"
 
 namespace carousel::accel {

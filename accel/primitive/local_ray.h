@@ -7,7 +7,7 @@
 #include "accel/box/slab.h"
 #include "accel/primitive/watertight.h"
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/types/ray.h"
 

@@ -12,7 +12,7 @@
 #include "accel/structure/node.h"
 #include "accel/structure/partition.h"
 #include "accel/transform/transform.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/aabb.h"
 #include "core/types/any_hit.h"
 #include "core/types/hit_sink.h"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 
 namespace carousel::accel {
 

@@ -4,7 +4,7 @@
 
 #include "accel/transform/inverse_matrix.h"
 #include "accel/transform/two_step.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/aabb.h"
 #include "core/types/ray.h"
 #include "core/types/vec.h"

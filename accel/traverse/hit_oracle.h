@@ -7,7 +7,7 @@
 
 #include "accel/traverse/oracle_primitive.h"
 #include "accel/traverse/oracle_tree.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/any_hit.h"
 #include "core/types/workload.h"
 #include "scene/model/scene.h"

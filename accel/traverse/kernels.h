@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/engine.h"
 #include "core/statistics/cull_counts.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/types/ray.h"

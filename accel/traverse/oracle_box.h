@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/aabb.h"
 #include "core/types/ray.h"
 

@@ -6,7 +6,7 @@
 
 #include "accel/transform/transform.h"
 #include "accel/traverse/oracle_box.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/any_hit.h"
 #include "core/types/workload.h"
 #include "scene/model/opacity.h"

@@ -1,5 +1,6 @@
 #include "app/accuracy/case_text.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <optional>

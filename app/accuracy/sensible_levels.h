@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "scene/model/scene.h"
 
 namespace carousel::app {

@@ -117,7 +117,8 @@ report::Report run_network(const Prepared& p, const InterruptScope& interrupt, b
 
 report::Report play_requests(const Prepared& p, const InterruptScope& interrupt) {
   const ringbus::MemoryLog requests = read_memory_csv(find_beside(p.config_folder, p.config().workload.memory_trace));
-  return memory_report(p, ringbus::run_memory_trace(p.config(), requests, interrupt.token()));
+  return memory_report(
+      p, ringbus::run_memory_trace(p.config().memory, p.config().engine.clock_mhz, requests, interrupt.token()));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 
 #include "app/command_line/command_options.h"
 #include "app/stress/ring_queues.h"
-#include "core/config/config.h"
+#include "core/config/fields/queue_kind.h"
 #include "ringbus/stress/pattern.h"
 
 namespace carousel::app {

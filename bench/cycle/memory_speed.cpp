@@ -45,7 +45,7 @@ MemorySpeed measure_memory(const MemoryCase& one, int repetitions) {
   std::vector<double> speeds;
   for (int i = 0; i < repetitions; ++i) {
     const Stopwatch stopwatch;
-    out.cycles = ringbus::run_memory_trace(one.config, requests).cycles;
+    out.cycles = ringbus::run_memory_trace(one.config.memory, one.config.engine.clock_mhz, requests).cycles;
     speeds.push_back(static_cast<double>(requests.size()) / stopwatch.elapsed().cpu);
   }
   out.requests_per_cpu_second = spread_of(speeds);

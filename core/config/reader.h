@@ -1,11 +1,17 @@
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/field.h"
+#include "core/config/fields/shading.h"
+#include "core/config/fields/testers.h"
+#include "core/config/fields/topology.h"
+#include "core/config/fields/workload.h"
 #include "core/config/tree/tree.h"
+#include "core/types/vec.h"
 
 namespace carousel::config {
 

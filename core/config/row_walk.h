@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/shading.h"
+#include "core/config/fields/testers.h"
+#include "core/config/fields/workload.h"
 
 namespace carousel::config {
 

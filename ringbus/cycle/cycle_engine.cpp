@@ -25,8 +25,8 @@ class CycleRun {
         options_(options),
         link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
         machine_(config, accel, scene_size, workload, options.statistics,
-                 {options.trace, most_samples(options.samples, series_counters(config)), options.timeline, options.ray,
-                  options.memory}) {
+                 {options.trace, most_samples(options.samples, series_counters(config.topology)), options.timeline,
+                  options.ray, options.memory}) {
     machine_.warm(options.warm);
   }
 

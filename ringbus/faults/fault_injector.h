@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/faults.h"
 #include "core/statistics/link_fault_counts.h"
 
 namespace carousel::ringbus {

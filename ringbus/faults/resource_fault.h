@@ -4,7 +4,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "core/config/config.h"
+#include "core/config/fields/faults.h"
+#include "core/config/fields/testers.h"
 #include "core/types/ids.h"
 #include "ringbus/schedule/schedule.h"
 

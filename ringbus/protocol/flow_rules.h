@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 
 namespace carousel::ringbus {
 

@@ -11,7 +11,8 @@ namespace {
 RayControlSettings control_settings(const Config& config, const accel::Accel& accel, float scene_size,
                                     const Topology& topology, const RankShare& share) {
   const std::int32_t tests = Resource::initial_tests(resource_settings(config, scene_size), accel);
-  RayControlSettings settings = ray_control_settings(config, tests, scene_size);
+  RayControlSettings settings =
+      ray_control_settings(config.rays, config.collections, config.packets, config.bundles, tests, scene_size);
   settings.local |= !topology.has_packets();
   settings.share = share;
   return settings;

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "core/config/config.h"
+#include "core/config/fields/queue_kind.h"
 
 namespace carousel::ringbus {
 

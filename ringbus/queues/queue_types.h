@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/config/config.h"
+#include "core/config/fields/queue_kind.h"
 #include "core/system/error.h"
 #include "ringbus/queues/atomic_queue_adapter.h"
 #include "ringbus/queues/boost_spsc_queue.h"

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
 #include "core/types/workload.h"
 
 namespace carousel::ringbus {

@@ -5,15 +5,11 @@
 
 namespace carousel::ringbus {
 
-RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size) {
-  const bool local = config.collections.home == Home::kLocal;
-  return {config.rays.placement,
-          local,
-          static_cast<std::size_t>(config.packets.rays),
-          initial_tests,
-          config.bundles,
-          scene_size,
-          {}};
+RayControlSettings ray_control_settings(const RaysConfig& rays, const CollectionsConfig& collections,
+                                        const PacketsConfig& packets, const BundlesConfig& bundles,
+                                        std::int32_t initial_tests, float scene_size) {
+  const bool local = collections.home == Home::kLocal;
+  return {rays.placement, local, static_cast<std::size_t>(packets.rays), initial_tests, bundles, scene_size, {}};
 }
 
 RayControl::RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores)

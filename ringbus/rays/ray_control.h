@@ -9,7 +9,10 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
+#include "core/config/fields/collections.h"
+#include "core/config/fields/packets.h"
+#include "core/config/fields/rays.h"
 #include "core/types/ids.h"
 #include "core/types/workload.h"
 #include "ringbus/queues/pooled_queue.h"
@@ -33,7 +36,9 @@ struct RayControlSettings {
   RankShare share{};     ///< the part of the machine that this process plays
 };
 
-RayControlSettings ray_control_settings(const Config& config, std::int32_t initial_tests, float scene_size);
+RayControlSettings ray_control_settings(const RaysConfig& rays, const CollectionsConfig& collections,
+                                        const PacketsConfig& packets, const BundlesConfig& bundles,
+                                        std::int32_t initial_tests, float scene_size);
 
 /// Gives new rays slots and IDs, in slots that completed rays freed.
 ///

@@ -9,7 +9,7 @@
 
 #include "accel/box/bundle.h"
 #include "accel/traverse/ray_check.h"
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
 #include "core/system/error.h"
 #include "core/system/huge_pages.h"
 #include "core/types/workload.h"

@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "accel/structure/partition.h"
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 #include "core/types/ids.h"
 #include "ringbus/rays/rank_share.h"
 

@@ -2,7 +2,13 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
+#include "core/config/fields/collections.h"
+#include "core/config/fields/packets.h"
+
+namespace carousel {
+struct Config;
+}
 
 namespace carousel::ringbus {
 
@@ -16,13 +22,6 @@ struct ResourceSettings {
   float scene_size = 1;                   ///< scale of entry distances and of boxes
 };
 
-inline ResourceSettings resource_settings(const Config& config, float scene_size) {
-  return {config.collections,
-          config.packets,
-          config.bundles,
-          config.bvh.treelet_triangles,
-          static_cast<std::uint32_t>(config.topology.resources),
-          scene_size};
-}
+ResourceSettings resource_settings(const Config& config, float scene_size);
 
 }  // namespace carousel::ringbus

@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
+#include "core/config/fields/collections.h"
+#include "core/config/fields/packets.h"
 #include "ringbus/resource/collections/collection_store.h"
 
 namespace carousel::ringbus {

@@ -1,6 +1,6 @@
 #include "ringbus/stress/queue_under_test.h"
 
-#include "core/config/config.h"
+#include "core/config/fields/queue_kind.h"
 #include "core/types/enum_names.h"
 #include "ringbus/queues/queue_types.h"
 

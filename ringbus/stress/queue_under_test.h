@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include "core/config/config.h"
+#include "core/config/fields/queue_kind.h"
 #include "ringbus/queues/link_queue.h"
 #include "ringbus/stress/message.h"
 

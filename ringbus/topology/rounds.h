@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "ringbus/topology/plan.h"
 
 namespace carousel::ringbus {

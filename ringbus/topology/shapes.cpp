@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "ringbus/topology/plan.h"
 
 namespace carousel::ringbus {

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "core/types/ids.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/topology/plan.h"

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/scene.h"
 #include "scene/model/scene.h"
 
 namespace carousel::scene {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/camera.h"
 #include "core/types/ray.h"
 #include "scene/model/scene.h"
 #include "shading/math/sampler.h"

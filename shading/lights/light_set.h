@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/ray.h"
 #include "core/types/vec.h"
 #include "scene/model/scene.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/types/vec.h"
 #include "shading/surface/triangle_geometry.h"
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "accel/builders/binary/sah_build.h"
-#include "core/config/config.h"
+#include "core/config/fields/bvh.h"
 
 namespace carousel::accel {
 

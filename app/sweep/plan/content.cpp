@@ -84,12 +84,12 @@ const std::string& ContentDigests::of_scene(const std::string& name) {
   return digest = bytes_digest(all);
 }
 
-std::string ContentDigests::of(const Config& config) {
+std::string ContentDigests::of(const SceneConfig& scene, const WorkloadConfig& workload) {
   std::string out;
-  if (config.workload.kind == WorkloadConfig::Kind::kTraffic) return out;
-  if (config.workload.kind == WorkloadConfig::Kind::kMemoryTrace) return of_file(config.workload.memory_trace);
-  if (!config.scene.file.empty()) out += of_scene(config.scene.file);
-  if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) out += of_file(config.workload.rays_from);
+  if (workload.kind == WorkloadConfig::Kind::kTraffic) return out;
+  if (workload.kind == WorkloadConfig::Kind::kMemoryTrace) return of_file(workload.memory_trace);
+  if (!scene.file.empty()) out += of_scene(scene.file);
+  if (workload.kind == WorkloadConfig::Kind::kRaysFrom) out += of_file(workload.rays_from);
   return out;
 }
 

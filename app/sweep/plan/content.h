@@ -3,8 +3,10 @@
 #include <filesystem>
 #include <map>
 #include <string>
+#include <utility>
 
-#include "core/config/config.h"
+#include "core/config/fields/scene.h"
+#include "core/config/fields/workload.h"
 
 namespace carousel::app {
 
@@ -16,7 +18,7 @@ class ContentDigests {
 
   /// The digest of the scene's file, the files that it names, and a list of rays; empty if the configuration names
   /// none. Throws FileError for files that cannot be read.
-  std::string of(const Config& config);
+  std::string of(const SceneConfig& scene, const WorkloadConfig& workload);
 
  private:
   const std::string& of_file(const std::string& name);

@@ -83,7 +83,8 @@ SweepPoint PointMaker::make(const Choice& choice) {
   nlohmann::ordered_json config = config_json(located.config);
   config.erase("vary");
   if (located.config.engine.kind == EngineKind::kCycle) config["engine"].erase("threads");  // changes no result
-  const nlohmann::ordered_json all{{"program", program_}, {"config", config}, {"files", content_.of(located.config)}};
+  const nlohmann::ordered_json all{
+      {"program", program_}, {"config", config}, {"files", content_.of(located.config.scene, located.config.workload)}};
   point.digest = bytes_digest(all.dump());
   return point;
 }

@@ -4,7 +4,9 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
+#include "core/config/fields/packets.h"
+#include "core/config/fields/topology.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/resource/collections/issue_policy.h"

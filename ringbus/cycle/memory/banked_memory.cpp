@@ -6,10 +6,8 @@
 
 namespace carousel::ringbus::cycle {
 
-BankedMemory::BankedMemory(const Config& config, std::vector<Client> clients)
-    : MemoryAgent(config.memory, std::move(clients)),
-      dram_(config.memory.dram, config.engine.clock_mhz),
-      clients_of_line_(clients_.size()) {}
+BankedMemory::BankedMemory(const MemoryConfig& config, std::int64_t clock_mhz, std::vector<Client> clients)
+    : MemoryAgent(config, std::move(clients)), dram_(config.dram, clock_mhz), clients_of_line_(clients_.size()) {}
 
 /// The engine's cycle in which DRAM does something next.
 Cycle BankedMemory::next_step() const {
@@ -46,10 +44,10 @@ void BankedMemory::close(Cycle end) {
   samples_.close(end, [this](Cycle, std::span<std::uint64_t> row) { row[0] = dram_.served_bytes(); });
 }
 
-std::unique_ptr<MemoryAgent> make_memory(const Config& config, std::vector<MemoryAgent::Client> clients) {
-  if (config.memory.dram.preset == DramConfig::Preset::kPipe)
-    return std::make_unique<Memory>(config.memory, std::move(clients));
-  return std::make_unique<BankedMemory>(config, std::move(clients));
+std::unique_ptr<MemoryAgent> make_memory(const MemoryConfig& config, std::int64_t clock_mhz,
+                                         std::vector<MemoryAgent::Client> clients) {
+  if (config.dram.preset == DramConfig::Preset::kPipe) return std::make_unique<Memory>(config, std::move(clients));
+  return std::make_unique<BankedMemory>(config, clock_mhz, std::move(clients));
 }
 
 }  // namespace carousel::ringbus::cycle

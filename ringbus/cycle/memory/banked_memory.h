@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "ringbus/cycle/memory/dram/dram.h"
@@ -10,7 +12,8 @@ namespace carousel::ringbus::cycle {
 /// DRAM with banks behind the caches (`memory.dram.preset`). A line is answered when its last byte is there.
 class BankedMemory final : public MemoryAgent {
  public:
-  BankedMemory(const Config& config, std::vector<Client> clients);
+  /// `clock_mhz`: engine.clock_mhz.
+  BankedMemory(const MemoryConfig& config, std::int64_t clock_mhz, std::vector<Client> clients);
 
   Cycle next() const override;
   void run(Cycle end) override;

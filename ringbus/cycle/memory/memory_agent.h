@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/dram_use.h"
@@ -76,7 +79,8 @@ class MemoryAgent : public Agent {
   MemoryLog* log_ = nullptr;
 };
 
-/// The memory that the configuration names.
-std::unique_ptr<MemoryAgent> make_memory(const Config& config, std::vector<MemoryAgent::Client> clients);
+/// The memory that the configuration names. `clock_mhz`: engine.clock_mhz.
+std::unique_ptr<MemoryAgent> make_memory(const MemoryConfig& config, std::int64_t clock_mhz,
+                                         std::vector<MemoryAgent::Client> clients);
 
 }  // namespace carousel::ringbus::cycle

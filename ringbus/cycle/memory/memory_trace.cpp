@@ -27,8 +27,9 @@ void run_pipe(const MemoryConfig& config, const MemoryLog& requests, MemoryTrace
   }
 }
 
-void run_banks(const Config& config, const MemoryLog& requests, const std::stop_token& stop, MemoryTraceResult& out) {
-  Dram dram(config.memory.dram, config.engine.clock_mhz);
+void run_banks(const MemoryConfig& config, std::int64_t clock_mhz, const MemoryLog& requests,
+               const std::stop_token& stop, MemoryTraceResult& out) {
+  Dram dram(config.dram, clock_mhz);
   Cycle last = 0;
   const auto answer = [&](std::uint64_t index, DramCycle done) {
     const Cycle end = dram.engine_end(done);
@@ -52,7 +53,8 @@ void run_banks(const Config& config, const MemoryLog& requests, const std::stop_
 
 }  // namespace
 
-MemoryTraceResult run_memory_trace(const Config& config, const MemoryLog& requests, std::stop_token stop) {
+MemoryTraceResult run_memory_trace(const MemoryConfig& config, std::int64_t clock_mhz, const MemoryLog& requests,
+                                   std::stop_token stop) {
   const auto start = std::chrono::steady_clock::now();
   MemoryTraceResult out;
   out.requests = requests.size();
@@ -60,10 +62,10 @@ MemoryTraceResult run_memory_trace(const Config& config, const MemoryLog& reques
     ++(request.write ? out.writes : out.reads);
     out.bytes += request.bytes;
   }
-  if (config.memory.dram.preset == DramConfig::Preset::kPipe)
-    run_pipe(config.memory, requests, out);
+  if (config.dram.preset == DramConfig::Preset::kPipe)
+    run_pipe(config, requests, out);
   else
-    run_banks(config, requests, stop, out);
+    run_banks(config, clock_mhz, requests, stop, out);
   out.wall_seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return out;
 }

@@ -3,7 +3,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/results/dram_use.h"
 #include "ringbus/results/memory_request.h"
@@ -24,6 +24,7 @@ struct MemoryTraceResult {
 /// Plays requests, in the order of their cycles, to the memory of the configuration, without caches. A read of a pipe
 /// takes `memory.dram_latency_cycles` besides the time of its bytes; with banks the way there and back is left out. A
 /// request waits until the memory has room for it; it holds up those behind it only as the memory does.
-MemoryTraceResult run_memory_trace(const Config& config, const MemoryLog& requests, std::stop_token stop = {});
+MemoryTraceResult run_memory_trace(const MemoryConfig& config, std::int64_t clock_mhz, const MemoryLog& requests,
+                                   std::stop_token stop = {});
 
 }  // namespace carousel::ringbus

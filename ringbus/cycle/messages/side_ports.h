@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "ringbus/cycle/messages/any_hit_messages.h"
 #include "ringbus/cycle/messages/control_messages.h"
 #include "ringbus/cycle/messages/help_messages.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {

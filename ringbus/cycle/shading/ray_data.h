@@ -5,7 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
+#include "core/config/fields/topology.h"
 #include "core/types/workload.h"
 #include "ringbus/cycle/shapes/shape_port.h"
 #include "ringbus/protocol/machine.h"

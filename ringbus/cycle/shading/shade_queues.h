@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/shading.h"
 #include "core/types/workload.h"
 
 namespace carousel::ringbus::cycle {

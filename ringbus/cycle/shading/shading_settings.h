@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
+#include "core/config/fields/faults.h"
+#include "core/config/fields/shading.h"
+#include "core/config/fields/topology.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -18,17 +22,5 @@ struct ShadingSettings {
   std::uint64_t seed = 1;
   bool addressed = false;  ///< rays travel to the resources that they name
 };
-
-inline ShadingSettings shading_settings(const Config& config) {
-  return {config.shading,
-          config.bundles,
-          config.topology.link,
-          config.faults.resource,
-          static_cast<std::size_t>(shader_workers(config)),
-          static_cast<std::size_t>(config.topology.resources * config.rays.slots_per_resource),
-          static_cast<std::size_t>(config.packets.rays),
-          static_cast<std::uint64_t>(config.image.seed),
-          config.rays.placement == Placement::kAddressed};
-}
 
 }  // namespace carousel::ringbus::cycle

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {

@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
+#include "core/config/fields/topology.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/shapes/shape_port.h"

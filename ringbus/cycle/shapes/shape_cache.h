@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
 #include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/shapes/cache/cache_answers.h"

@@ -9,6 +9,8 @@
 #include "accel/builders/quantised_boxes.h"
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
+#include "core/config/fields/bvh.h"
+#include "core/config/fields/memory.h"
 #include "ringbus/cycle/shapes/leaf_strips.h"
 
 namespace carousel::ringbus::cycle {

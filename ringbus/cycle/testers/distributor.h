@@ -6,7 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/testers.h"
+#include "core/config/fields/topology.h"
 #include "core/statistics/distributor_counts.h"
 #include "core/statistics/intersection_counts.h"
 #include "ringbus/cycle/testers/ray_stages.h"

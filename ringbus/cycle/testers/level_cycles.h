@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
+#include "core/config/fields/testers.h"
 #include "ringbus/cycle/testers/unit_passes.h"
 
 namespace carousel::ringbus::cycle {

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/cull_planes.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 
 namespace carousel::ringbus::cycle {

@@ -6,7 +6,9 @@
 #include <span>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/cull_planes.h"
+#include "core/config/fields/testers.h"
+#include "core/config/fields/topology.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/types/ids.h"
 #include "ringbus/cycle/testers/distributor.h"
@@ -16,7 +18,6 @@
 #include "ringbus/cycle/testers/ray_stages.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 #include "ringbus/cycle/testers/unit_passes.h"
-#include "ringbus/faults/resource_fault.h"
 #include "ringbus/resource/visit/test_outcome.h"
 #include "ringbus/results/cycle_result.h"
 
@@ -245,14 +246,5 @@ class Tester {
   bool reads_cost_;
   std::uint64_t banks_of_rays_, conflicts_ = 0, second_reads_ = 0;  // see TileResult
 };
-
-/// The testers of a resource: the machine's or its own, slowed by a fault, at the levels of accuracy.
-inline TestersConfig testers_of(const Config& config, ResourceId id) {
-  TestersConfig testers = config.testers;
-  for (const ResourceOverride& one : config.topology.overrides)
-    if (one.resource == id.value) testers = one.testers;
-  slow_down(testers, config.faults, id);
-  return at_levels(testers, config.accuracy);
-}
 
 }  // namespace carousel::ringbus::cycle

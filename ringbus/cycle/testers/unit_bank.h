@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/config/config.h"
+#include "core/config/fields/testers.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/time/clock.h"
 #include "ringbus/time/fifo.h"

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/workload.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
 
 namespace carousel::ringbus::cycle {

@@ -3,7 +3,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/topology.h"
+#include "core/config/fields/workload.h"
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/results/cycle_result.h"
 
@@ -36,11 +37,10 @@ struct TrafficResult {
   }
   double routers_mean() const { return offered == 0 ? 0 : static_cast<double>(routers) / static_cast<double>(offered); }
   /// Mean latency of the packets offered if each were alone: see ringbus/cycle/traffic/traffic_node.h.
-  double zero_load_latency(const Config& config) const {
+  double zero_load_latency(const TrafficConfig& t, const LinkConfig& link) const {
     if (offered == 0) return 0;
-    const TrafficConfig& t = config.workload.traffic;
     return static_cast<double>(t.inject_cycles + t.eject_cycles) + static_cast<double>(flits - 1) +
-           (routers_mean() - 1) * static_cast<double>(config.topology.link.latency_cycles);
+           (routers_mean() - 1) * static_cast<double>(link.latency_cycles);
   }
 };
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/workload.h"
 #include "core/numeric/rng.h"
 #include "core/types/ids.h"
 #include "ringbus/time/clock.h"

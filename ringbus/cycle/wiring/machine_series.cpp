@@ -148,8 +148,8 @@ class SeriesWriter {
 
 }  // namespace
 
-std::size_t series_counters(const Config& config) {
-  const Topology topology(config.topology);
+std::size_t series_counters(const TopologyConfig& config) {
+  const Topology topology(config);
   return topology.resources() * (kFirstPortCounter + 1) +
          topology.wires().size() * static_cast<std::size_t>(PortCounter::kEnd) + 32;
 }

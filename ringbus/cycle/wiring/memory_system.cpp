@@ -32,7 +32,7 @@ MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::C
     caches_.push_back(std::make_unique<ShapeCache>(config.memory, before, std::move(askers), down, up));
     memory_clients.push_back({&down, &up});
   }
-  memory_ = make_memory(config, std::move(memory_clients));
+  memory_ = make_memory(config.memory, config.engine.clock_mhz, std::move(memory_clients));
 }
 
 void MemorySystem::warm(const WarmCaches& from) {

@@ -3,7 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/faults.h"
+#include "core/config/fields/topology.h"
 #include "ringbus/cycle/fabric/hub.h"
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/protocol/machine.h"

@@ -21,14 +21,15 @@ TimelineOptions slices_wanted(const Observation& observed) {
 
 }  // namespace
 
-Recorder::Recorder(const Config& config, const Machine& machine, const Observation& observed)
+Recorder::Recorder(const TestersConfig& testers, bool has_distributor, const Machine& machine,
+                   const Observation& observed)
     : topology_(machine.topology),
       options_(slices_wanted(observed)),
       ray_(observed.ray),
-      contexts_(static_cast<std::uint32_t>(config.testers.contexts)),
-      testers_(static_cast<std::uint32_t>(own_testers(config))),
+      contexts_(static_cast<std::uint32_t>(testers.contexts)),
+      testers_(has_distributor ? static_cast<std::uint32_t>(testers.distributor.testers) : 1),
       per_resource_(1 + contexts_ + testers_ * static_cast<std::uint32_t>(kUnitKinds.size()) + 2),
-      has_distributor_(has_distributor(config)),
+      has_distributor_(has_distributor),
       trips_(machine.packets.size()) {
   const std::size_t nodes = topology_.resources() + topology_.hubs().size();
   for (std::size_t i = 0; i < nodes; ++i) slices_.emplace_back(options_);

@@ -4,7 +4,7 @@
 #include <deque>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/testers.h"
 #include "ringbus/cycle/fabric/link_recorder.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/results/observation.h"
@@ -15,8 +15,8 @@ namespace carousel::ringbus::cycle {
 /// The logs of a whole machine: one a node of the network, which its links share, and one of shading.
 class Recorder {
  public:
-  /// Keeps a reference to the topology.
-  Recorder(const Config& config, const Machine& machine, const Observation& observed);
+  /// Keeps a reference to the topology. `has_distributor`: the machine's testers stand behind one.
+  Recorder(const TestersConfig& testers, bool has_distributor, const Machine& machine, const Observation& observed);
 
   Recording of_resource(ResourceId id);
   /// The recording of ray control and shading.

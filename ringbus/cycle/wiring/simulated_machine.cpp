@@ -20,6 +20,18 @@ std::optional<std::uint32_t> local_packets(const Config& config) {
   return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
 }
 
+ShadingSettings shading_settings(const Config& config) {
+  return {config.shading,
+          config.bundles,
+          config.topology.link,
+          config.faults.resource,
+          static_cast<std::size_t>(shader_workers(config)),
+          static_cast<std::size_t>(config.topology.resources * config.rays.slots_per_resource),
+          static_cast<std::size_t>(config.packets.rays),
+          static_cast<std::uint64_t>(config.image.seed),
+          config.rays.placement == Placement::kAddressed};
+}
+
 bool calls_shader(const Config& config, const accel::Accel& accel) {
   return accel.calls_any_hit() && config.testers.any_hit == TestersConfig::AnyHit::kShader;
 }
@@ -37,7 +49,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                         : nullptr),
       network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
   if (observed.timeline.most > 0 || observed.ray != nullptr)
-    recorder_ = std::make_unique<Recorder>(config, shared_, observed);
+    recorder_ = std::make_unique<Recorder>(config.testers, has_distributor(config), shared_, observed);
   std::vector<SidePorts> sides;
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {

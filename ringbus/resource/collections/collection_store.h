@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "accel/structure/node.h"
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 #include "core/numeric/log2_histogram.h"
 #include "core/statistics/collection_counts.h"
 #include "ringbus/rays/ray_id.h"

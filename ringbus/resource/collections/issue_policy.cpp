@@ -5,7 +5,7 @@
 #include <bit>
 #include <deque>
 
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
 #include "ringbus/resource/collections/priority_lists.h"

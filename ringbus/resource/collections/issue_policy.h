@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "accel/structure/node.h"
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 
 namespace carousel::ringbus {
 

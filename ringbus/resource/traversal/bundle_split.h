@@ -2,7 +2,7 @@
 
 #include "accel/box/bundle.h"
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
 
 namespace carousel::ringbus {
 

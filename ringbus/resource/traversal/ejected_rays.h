@@ -7,7 +7,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/bundle_builder.h"
 #include "ringbus/rays/ray_store.h"

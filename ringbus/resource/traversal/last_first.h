@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstdint>
 
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 
 namespace carousel::ringbus {
 

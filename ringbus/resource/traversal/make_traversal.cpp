@@ -5,7 +5,8 @@
 #include <optional>
 #include <utility>
 
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
+#include "core/config/fields/packets.h"
 #include "core/types/enum_names.h"
 #include "ringbus/resource/traversal/bundled.h"
 #include "ringbus/resource/traversal/ordered.h"

@@ -4,7 +4,9 @@
 #include <memory>
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
+#include "core/config/fields/bundles.h"
+#include "core/config/fields/collections.h"
+#include "core/config/fields/packets.h"
 
 namespace carousel::ringbus {
 

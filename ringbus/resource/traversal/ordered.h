@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 #include "ringbus/resource/traversal/ray_stacks.h"
 #include "ringbus/resource/traversal/traversal_method.h"
 #include "ringbus/resource/visit/visit_context.h"

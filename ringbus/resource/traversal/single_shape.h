@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/config/fields/packets.h"
 #include "ringbus/resource/traversal/spread.h"
 #include "ringbus/resource/traversal/treelets.h"
 

@@ -7,7 +7,7 @@
 
 #include "accel/structure/accel.h"
 #include "accel/transform/instance_data.h"
-#include "core/config/config.h"
+#include "core/config/fields/accuracy.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/statistics/ray_bytes.h"
 #include "core/types/ray.h"

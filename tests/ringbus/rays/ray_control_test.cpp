@@ -23,7 +23,8 @@ struct Bench {
     config.packets.rays = packet_rays;
     for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(resources); ++r)
       stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots)));
-    control = std::make_unique<RayControl>(ray_control_settings(config, 1, 1.0f), stores);
+    control = std::make_unique<RayControl>(
+        ray_control_settings(config.rays, config.collections, config.packets, config.bundles, 1, 1.0f), stores);
   }
   std::vector<RayGroup> collect(std::uint32_t resource) {
     std::vector<RayGroup> groups;

@@ -1,11 +1,22 @@
 #pragma once
 
-#include "core/config/config.h"
+#include <cstdint>
+
+#include "core/config/fields/accuracy.h"
+#include "core/config/fields/cull_planes.h"
+#include "core/config/fields/faults.h"
+#include "core/config/fields/memory.h"
+#include "core/config/fields/testers.h"
+#include "core/config/fields/topology.h"
+#include "core/types/ids.h"
 #include "ringbus/cycle/shapes/shape_blocks.h"
-#include "ringbus/cycle/testers/tester.h"
 #include "ringbus/resource/settings.h"
 #include "ringbus/results/observation.h"
 #include "ringbus/results/recording.h"
+
+namespace carousel {
+struct Config;
+}
 
 namespace carousel::ringbus::cycle {
 
@@ -30,24 +41,7 @@ struct TileSettings {
   bool fetches_by_resource() const { return memory.fetch != MemoryConfig::Fetch::kPacket; }
 };
 
-inline TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
-                                  const Observation& observed) {
-  return {resource_settings(config, scene_size),
-          testers_of(config, id),
-          config.accuracy,
-          config.cull_planes.order,
-          config.rays.reads_per_cycle,
-          has_cells(config) ? testers_of(config, id).simd.lanes : 0,
-          config.rays.banks,
-          config.topology.shape == TopologyShape::kCentral,
-          has_distributor(config),
-          config.memory,
-          config.topology.link,
-          config.faults.resource,
-          statistics,
-          observed,
-          {},
-          nullptr};
-}
+TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
+                           const Observation& observed);
 
 }  // namespace carousel::ringbus::cycle

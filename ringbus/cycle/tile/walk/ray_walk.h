@@ -6,7 +6,7 @@
 
 #include "accel/structure/accel.h"
 #include "accel/traverse/kernels.h"
-#include "core/config/config.h"
+#include "core/config/fields/collections.h"
 #include "core/statistics/intersection_counts.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/resource/visit/transform_account.h"

@@ -27,7 +27,8 @@ inline Config dram_config(const std::string& preset, const std::string& more = "
 }
 
 inline MemoryTraceResult run_dram(const std::string& preset, const std::string& more, const MemoryLog& requests) {
-  return run_memory_trace(dram_config(preset, more), requests);
+  const Config config = dram_config(preset, more);
+  return run_memory_trace(config.memory, config.engine.clock_mhz, requests);
 }
 
 /// Ramulator's clock shows 1 in its first cycle, and its first refresh is due when it shows nREFI.

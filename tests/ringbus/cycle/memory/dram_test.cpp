@@ -158,7 +158,8 @@ TEST(Dram, APipeTakesItsLatency) {
                                      "pipe.yaml"})
                             .config;
   const MemoryTraceResult out =
-      run_memory_trace(config, {{10, 0, 64, false}, {10, 64, 32, false}, {500, 0, 32, false}, {500, 0, 64, true}});
+      run_memory_trace(config.memory, config.engine.clock_mhz,
+                       {{10, 0, 64, false}, {10, 64, 32, false}, {500, 0, 32, false}, {500, 0, 64, true}});
   EXPECT_EQ(out.latency.max(), 6 + 101u);  // 64 and 32 bytes at 16 a cycle
   EXPECT_EQ(out.latency.sum(), 4 + 6 + 2 + 3 * 101u);
   EXPECT_EQ(out.cycles, 500 + 2 + 101u);  // a write has no answer
@@ -170,7 +171,8 @@ TEST(Dram, ItsClockRunsBesideTheEngines) {
                                      "memory: {dram: {preset: gddr6_14, refresh: false}}\n",
                                      "dram.yaml"})
                             .config;
-  const MemoryTraceResult out = run_memory_trace(config, {{0, 0, 32, false}, {1000, 0, 32, false}});
+  const MemoryTraceResult out =
+      run_memory_trace(config.memory, config.engine.clock_mhz, {{0, 0, 32, false}, {1000, 0, 32, false}});
   const double begin = std::ceil(1000e3 / 570) * 570;
   EXPECT_EQ(out.cycles, static_cast<std::uint64_t>(std::ceil((begin + 26 * 570) / 1000)));
 }

@@ -1,0 +1,43 @@
+#include "ringbus/cycle/tile/stages/tile_settings.h"
+
+#include "core/config/config.h"
+#include "ringbus/cycle/testers/level_cycles.h"
+#include "ringbus/faults/resource_fault.h"
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+/// The testers of a resource: the machine's or its own, slowed by a fault, at the levels of accuracy.
+TestersConfig testers_of(const Config& config, ResourceId id) {
+  TestersConfig testers = config.testers;
+  for (const ResourceOverride& one : config.topology.overrides)
+    if (one.resource == id.value) testers = one.testers;
+  slow_down(testers, config.faults, id);
+  return at_levels(testers, config.accuracy);
+}
+
+}  // namespace
+
+TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
+                           const Observation& observed) {
+  const TestersConfig testers = testers_of(config, id);
+  return {resource_settings(config, scene_size),
+          testers,
+          config.accuracy,
+          config.cull_planes.order,
+          config.rays.reads_per_cycle,
+          has_cells(config) ? testers.simd.lanes : 0,
+          config.rays.banks,
+          config.topology.shape == TopologyShape::kCentral,
+          has_distributor(config),
+          config.memory,
+          config.topology.link,
+          config.faults.resource,
+          statistics,
+          observed,
+          {},
+          nullptr};
+}
+
+}  // namespace carousel::ringbus::cycle
