@@ -4,7 +4,6 @@
 
 #include "app/build_report/memory_report.h"
 #include "report/text/ratio.h"
-#include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
 #include "ringbus/verdict/steady_state.h"
@@ -82,26 +81,12 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   const std::uint64_t port_cycles = c.cycles * static_cast<std::uint64_t>(config.l2_banks);
   for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, port_cycles)});
   if (c.own_caches) out.own_caches = {*c.own_caches, ratio(c.own_caches->port_busy, c.cycles * c.tiles.size())};
-  out.dram_lines = c.memory_lines;
-  out.dram_bytes = c.memory_lines * ringbus::cycle::fetched_bytes(config);
-  out.dram_lines_written = c.memory_lines_written;
-  out.dram_busy_cycles = c.memory_busy;
-  out.dram_utilisation = ratio(c.memory_busy, c.cycles);
-  if (c.ray_data)
-    out.ray_data = {c.ray_data->records.read,   c.ray_data->records.written, c.ray_data->states.read,
-                    c.ray_data->states.written, c.ray_data->film.read,       c.ray_data->film.written};
-  if (c.strips)
-    out.triangle_strips = {c.strips->triangles, c.strips->strips, c.strips->vertices, c.strips->bytes,
-                           c.strips->separate_bytes - c.strips->bytes};
-  if (config.l2_write == MemoryConfig::Write::kBack) out.drain = {c.drain.lines, c.drain.bytes, c.drain.cycles};
+  out.counts = c.memory;
+  out.dram_utilisation = ratio(c.memory.busy, c.cycles);
+  out.ray_data = c.ray_data;
+  out.triangle_strips = c.strips;
+  if (config.l2_write == MemoryConfig::Write::kBack) out.drain = c.drain;
   if (c.dram) out.dram = dram_section(*c.dram);
-  return out;
-}
-
-std::vector<report::Bytes> bytes(const ringbus::cycle::CycleResult& c) {
-  std::vector<report::Bytes> out;
-  for (const ringbus::cycle::ByteRow& row : c.bytes)
-    out.push_back({row.what, row.from, row.to, row.over, row.width, row.bytes, row.messages});
   return out;
 }
 
@@ -146,16 +131,13 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     r.collections->ids_interval = c.ids->interval;
   }
   r.memory = memory(c, config.memory);
-  r.bytes = bytes(c);
-  r.shading.products = c.shading_products;
-  r.shading.lookups = c.shading_lookups;
-  if (config.shading.lanes > 1) {
-    const ringbus::cycle::ShadeVectorCounts& of = c.shading_vectors;
-    r.shading.vectors = {of.vectors, of.rays,
-                         ratio(of.rays, of.runs * static_cast<std::uint64_t>(config.shading.lanes)),
+  r.bytes = c.bytes;
+  r.shading.products = c.shading.products;
+  r.shading.lookups = c.shading.lookups;
+  if (const ShadeVectorCounts& of = c.shading.vectors; config.shading.lanes > 1)
+    r.shading.vectors = {of, ratio(of.rays, of.runs * static_cast<std::uint64_t>(config.shading.lanes)),
                          ratio(of.runs, of.vectors)};
-  }
-  r.shading.utilisation = ratio(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
+  r.shading.utilisation = ratio(c.shading.busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 
 }  // namespace carousel::app

@@ -35,7 +35,7 @@ class Account {
     tests();
     stores();
     packets();
-    for (const report::Bytes& row : *r_.bytes) message(row);
+    for (const ByteRow& row : *r_.bytes) message(row);
     shading();
     for (const auto [kind, part] : parts_.units) part.rays = static_cast<double>(r_.rays.completed);
     for (report::EnergyOf& part : parts_.others) part.rays = static_cast<double>(r_.rays.completed);
@@ -82,7 +82,7 @@ class Account {
   }
 
   /// Shared parts stand in the middle of the square of the resources that share them: the way is half of its side.
-  void message(const report::Bytes& row) {
+  void message(const ByteRow& row) {
     const auto bytes = static_cast<double>(row.bytes);
     if (row.over == "links") return;
     if (row.from == "DRAM" || row.to == "DRAM") {
@@ -149,7 +149,7 @@ void add_sampled_energy(report::Report& r, const Config& config) {
   if (!r.sampled || !r.energy) return;
   report::Sampled& s = *r.sampled;
   double moved = 0;
-  for (const report::Bytes& row : *r.bytes)
+  for (const ByteRow& row : *r.bytes)
     if (row.what == "lines" || row.what == "written lines") moved += static_cast<double>(row.bytes);
   const double rays = static_cast<double>(r.rays.completed), link_mm = r.area->link_mm;
   const auto with = [&](double bytes_per_ray) {

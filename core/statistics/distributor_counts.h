@@ -7,7 +7,7 @@ namespace carousel {
 /// The testers behind a distributor, and what kept them from working.
 struct DistributorCounts {
   std::uint64_t packets = 0, ids = 0, handing_out = 0, queue_full = 0, tester_busy = 0, held_back = 0, results_full = 0,
-                ahead = 0, undecided = 0, results = 0, parts = 0, shape_bytes = 0;
+                ahead = 0, undecided = 0, results = 0, parts = 0, shape_bytes = 0, shapes_taken = 0;
 
   static constexpr auto counters() {
     using C = DistributorCounts;
@@ -28,6 +28,8 @@ struct DistributorCounts {
         Counter{"parts", &C::parts, "parts",
                 "in which the results of packets went on; as many as packets, unless stragglers are forwarded"},
         Counter{"shape_bytes", &C::shape_bytes, "bytes", "shapes that went to the testers, once for all of them"},
+        Counter{"shapes_taken", &C::shapes_taken, "bytes", "shapes that had come when the tests of a packet began",
+                Shown::kNever},
     };
   }
   friend bool operator==(const DistributorCounts&, const DistributorCounts&) = default;

@@ -35,4 +35,25 @@ struct TransformedRayBytes {
   friend bool operator==(const TransformedRayBytes&, const TransformedRayBytes&) = default;
 };
 
+/// Data of rays and paths that ray control and shading have read from memory and written to it (`memory.ray_records`,
+/// `path_state`, `film`).
+struct RayDataBytes {
+  std::uint64_t records_read = 0, records_written = 0, states_read = 0, states_written = 0, film_read = 0,
+                film_written = 0;
+
+  static constexpr auto counters() {
+    using C = RayDataBytes;
+    return std::array{
+        Counter{"records_read", &C::records_read, "bytes", "master copies of rays read before the rays were loaded"},
+        Counter{"records_written", &C::records_written, "bytes",
+                "master copies of rays written, when they were given slots and when they were complete"},
+        Counter{"states_read", &C::states_read, "bytes", "states of paths read before their rays were shaded"},
+        Counter{"states_written", &C::states_written, "bytes", "states of paths written with new rays"},
+        Counter{"film_read", &C::film_read, "bytes", "pixels read to add the light of a path"},
+        Counter{"film_written", &C::film_written, "bytes", "pixels written"},
+    };
+  }
+  friend bool operator==(const RayDataBytes&, const RayDataBytes&) = default;
+};
+
 }  // namespace carousel

@@ -61,7 +61,7 @@ struct Report {
   std::optional<std::vector<Rank>> ranks;
   std::optional<std::vector<RankLink>> rank_links;
   std::optional<Memory> memory;
-  std::optional<std::vector<Bytes>> bytes;
+  std::optional<std::vector<ByteRow>> bytes;
   std::optional<TimeSeries> time_series;
   std::optional<Traffic> traffic;
   std::optional<MemoryTrace> memory_trace;

@@ -70,6 +70,9 @@ class JsonWriter {
 Json schema_of(const std::string&) {
   return {{"type", "string"}};
 }
+Json schema_of(std::string_view) {
+  return {{"type", "string"}};
+}
 Json schema_of(bool) {
   return {{"type", "boolean"}};
 }

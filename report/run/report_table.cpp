@@ -130,13 +130,13 @@ void ray_queue_lines(Table& table, const RayQueues& queues) {
 }
 
 /// A line for each kind of message: its bytes, sender, receiver and wire. Kinds that were not sent are left out.
-void byte_lines(Table& table, const std::vector<Bytes>& rows, std::uint64_t rays) {
+void byte_lines(Table& table, const std::vector<ByteRow>& rows, std::uint64_t rays) {
   std::string_view name = "bytes";
-  for (const Bytes& row : rows) {
+  for (const ByteRow& row : rows) {
     if (row.bytes == 0) continue;
     table.line(name, "{:<24} {:>10} {:>10} a ray   from {} to {}, over {}, {} bytes a cycle", row.what,
                bytes_text(row.bytes), fmt::format("{:.1f}", ratio(row.bytes, rays)), row.from, row.to, row.over,
-               row.width_bytes_per_cycle);
+               row.width);
     name = "";
   }
 }

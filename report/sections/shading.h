@@ -1,5 +1,6 @@
 #pragma once
 
+#include "core/statistics/shading_counts.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -125,14 +126,13 @@ void describe(V& v, const EffectsProof& r) {
 
 /// The vectors of shader workers with several lanes.
 struct ShadeVectors {
-  std::uint64_t vectors = 0, rays = 0;
+  ShadeVectorCounts counts;
   double fill = 0, shaders = 0;
 };
 
 template <class V>
 void describe(V& v, const ShadeVectors& r) {
-  v.field("vectors", r.vectors, "vectors", "vectors of completed rays that the workers shaded");
-  v.field("rays", r.rays, "rays", "rays of these");
+  describe(v, r.counts);
   v.field("fill", r.fill, "fraction",
           "fraction of the lanes that had a ray in a pass; a vector takes a pass for each of its different shaders");
   v.field("shaders", r.shaders, "shaders", "mean of the different shaders of a vector, which run one after the other");

@@ -112,20 +112,14 @@ class CycleRun {
     out.slot_waits = machine_.shared().control.slot_waits();
     CycleResult& c = out.cycle.emplace();
     c.cycles = end;
-    c.shading_busy = machine_.shading().busy();
-    const ShadeCosts& shading = machine_.shading().costs();
-    c.shading_products = shading.products();
-    c.shading_lookups = shading.lookups();
-    c.shading_vectors = shading.vectors();
+    c.shading = machine_.shading().counts();
     c.residence = machine_.shading().residence();
     const ResourceLoss& loss = machine_.shading().loss();
     out.rays_restarted = loss.rays_restarted();
     out.paths_restarted = loss.paths_restarted();
     if (loss.times() && loss.times()->noticed > 0) c.stop = loss.times();
     for (const auto& tile : machine_.resources()) out.packets_discarded += tile->packets_discarded();
-    c.memory_lines = machine_.memory().memory().lines();
-    c.memory_lines_written = machine_.memory().memory().lines_written();
-    c.memory_busy = machine_.memory().memory().busy();
+    c.memory = machine_.memory().memory().counts();
     c.uses = uses();
     c.progress = log_.samples();
     c.all_begun = all_begun_;
@@ -159,20 +153,20 @@ class CycleRun {
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
     });
-    if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->use();
-    if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().use();
-    if (complete) {
-      c.drain = machine_.drain(end);
-      c.drain.bytes = c.drain.lines * fetched_bytes(config_.memory);
-    }
+    if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->bytes();
+    if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().counts();
+    if (complete) c.drain = machine_.drain(end);
     for (const auto& cache : machine_.memory().caches()) {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());
     }
     for (const auto& cache : machine_.memory().own_caches())
       (c.own_caches ? *c.own_caches : c.own_caches.emplace()) += cache->statistics();
-    c.bytes = byte_ledger(machine_, config_);
-    if (kChecked && complete) check_byte_ledger(c.bytes);
+    c.bytes = byte_ledger(machine_);
+    if (kChecked && complete) {
+      check_byte_ledger(c.bytes);
+      check_lines(machine_, c.bytes, config_.memory);
+    }
     return out;
   }
 

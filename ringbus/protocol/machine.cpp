@@ -1,5 +1,6 @@
 #include "ringbus/protocol/machine.h"
 
+#include "core/config/config.h"
 #include "ringbus/protocol/packet_pool.h"
 #include "ringbus/resource/resource.h"
 #include "ringbus/resource/traversal/make_traversal.h"

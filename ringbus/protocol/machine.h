@@ -6,11 +6,14 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "core/config/config.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/protocol/flow_rules.h"
 #include "ringbus/rays/ray_control.h"
 #include "ringbus/topology/topology.h"
+
+namespace carousel {
+struct Config;
+}
 
 namespace carousel::ringbus {
 

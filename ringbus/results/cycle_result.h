@@ -7,17 +7,17 @@
 
 #include "core/numeric/latency_histogram.h"
 #include "core/numeric/log2_histogram.h"
+#include "core/statistics/byte_row.h"
 #include "core/statistics/cache_counts.h"
 #include "core/statistics/distributor_counts.h"
+#include "core/statistics/memory_counts.h"
 #include "core/statistics/packet_kind_counts.h"
 #include "core/statistics/ray_bytes.h"
+#include "core/statistics/shading_counts.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "core/types/unit_kind.h"
-#include "ringbus/results/byte_row.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
-#include "ringbus/results/ray_data_use.h"
-#include "ringbus/results/strip_use.h"
 #include "ringbus/results/trace.h"
 #include "ringbus/time/clock.h"
 
@@ -108,13 +108,6 @@ struct IdsAtOnce {
   friend bool operator==(const IdsAtOnce&, const IdsAtOnce&) = default;
 };
 
-/// The vectors in which shader workers shaded completed rays.
-struct ShadeVectorCounts {
-  std::uint64_t vectors = 0, rays = 0;
-  std::uint64_t runs = 0;  ///< runs of a shader for its rays of a vector
-  friend bool operator==(const ShadeVectorCounts&, const ShadeVectorCounts&) = default;
-};
-
 struct CycleResult {
   /// From cycle 0 to the last in which a resource, ray control or shading did anything.
   Cycle cycles = 0;
@@ -127,15 +120,12 @@ struct CycleResult {
   std::vector<CacheCounts> caches;
   std::optional<CacheCounts> own_caches;                 ///< sum over resources, if they have caches of their own
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
-  std::uint64_t memory_lines = 0, memory_lines_written = 0;
-  Cycle memory_busy = 0;
-  std::optional<RayDataUse> ray_data;  ///< if any is in memory
+  MemoryCounts memory;
+  std::optional<RayDataBytes> ray_data;  ///< if any is in memory
   CacheDrain drain;
-  std::optional<StripUse> strips;                           ///< with `bvh.leaves: strips`
-  std::optional<DramUse> dram;                              ///< use of DRAM with banks
-  Cycle shading_busy = 0;                                   ///< worker-cycles, without resources that help
-  std::uint64_t shading_products = 0, shading_lookups = 0;  ///< counts of ShadeWork
-  ShadeVectorCounts shading_vectors;
+  std::optional<LeafStripCounts> strips;  ///< with `bvh.leaves: strips`
+  std::optional<DramUse> dram;            ///< use of DRAM with banks
+  ShadingCounts shading;
   std::uint64_t hops = 0;
   Log2Histogram residence;        ///< times of rays from their slot until shading has their hit
   std::optional<IdsAtOnce> ids;   ///< where there are collections

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "ringbus/rays/ray_id.h"
+#include "ringbus/time/channel_list.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus {
@@ -17,7 +18,8 @@ namespace carousel::ringbus {
 /// thing that is sent within a window arrives after it (see windows.h), so nothing changes if the receiver sees it a
 /// little earlier.
 ///
-/// If a T has bytes(), the size of the message that it stands for, both ends count them.
+/// If a T has bytes(), the size of the message that it stands for, both ends count them; if not, the kind of message
+/// says the size of all (channel_list.h).
 ///
 /// With `Returns` the receiver gives each thing's place back when it takes the thing, and the sender learns of that at
 /// a time that the receiver names: the credits of a link, without a second channel.
@@ -25,20 +27,20 @@ namespace carousel::ringbus {
 /// Things stand in blocks that form a circle, so that the same few are used again and again. The sender puts a new one
 /// in when the next is still in use, and takes one out when there are too many; the receiver only follows.
 template <class T, bool Returns = false>
-class Channel {
+class Channel : public AnyChannel {
  public:
-  Channel() {
+  /// Enters itself into the list of its machine.
+  explicit Channel(const ChannelPlace& place) {
+    place.list.add(*this, place.kind, place.ends, kHasBytes);
     Block* block = new Block;
     block->next = block;
     head_ = tail_ = {block, block->items.data()};
     if constexpr (Returns) returns_.at = head_;
   }
-  ~Channel() {
+  ~Channel() override {
     for (Block* block = std::exchange(head_.block->next, nullptr); block != nullptr;)
       delete std::exchange(block, block->next);
   }
-  Channel(const Channel&) = delete;
-  Channel& operator=(const Channel&) = delete;
 
   void send(Cycle arrival, T thing) {
     if constexpr (kChecked) {
@@ -56,8 +58,7 @@ class Channel {
     sent_.store(sent, std::memory_order_release);  // publishes the item, and what follows its block
     if (arrival < *wake_) *wake_ = arrival;
   }
-  /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared. The sender writes it.
-  void wakes(Cycle& slot) { wake_ = &slot; }
+  void wakes(Cycle& slot) override { wake_ = &slot; }
 
   /// Arrival of the first thing; kNever when there is none.
   Cycle next() const {
@@ -119,16 +120,11 @@ class Channel {
     returns_.at.advance(++returns_.count);
   }
 
-  /// In all, as the sender and the receiver have counted; while no agent runs. `waiting` are those that have been sent
-  /// and not taken.
-  struct Count {
-    std::uint64_t sent = 0, taken = 0, waiting = 0;
-  };
   std::uint64_t bytes_sent() const { return bytes_sent_; }  ///< for the sender
-  Count messages() const {
+  Count messages() const override {
     return {sent_.load(std::memory_order_acquire), taken_.load(std::memory_order_acquire), size()};
   }
-  Count bytes() const {
+  Count bytes() const override {
     Count count{bytes_sent_, bytes_taken_, 0};
     if constexpr (kHasBytes) {
       for (std::size_t place = 0; place < size(); ++place) count.waiting += item(place).thing.bytes();

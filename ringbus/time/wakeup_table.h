@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ringbus/time/agent.h"
-#include "ringbus/time/channel.h"
+#include "ringbus/time/channel_list.h"
 
 namespace carousel::ringbus {
 
@@ -30,14 +30,12 @@ class WakeupTable {
 
   /// From now on the channel announces to agent `to` what agent `from` sends. Needed for every channel to an agent that
   /// is not polled().
-  template <class T, bool Returns>
-  void connect(Channel<T, Returns>& channel, const Agent& from, const Agent& to) {
+  void connect(AnyChannel& channel, const Agent& from, const Agent& to) {
     const Place place = places_.at(&to);
     channel.wakes(row(place.thread, places_.at(&from).thread)[place.index]);
   }
   /// As connect(), for a channel of which `to` is told by Agent::notify().
-  template <class T, bool Returns>
-  void connect_beside(Channel<T, Returns>& channel, const Agent& from, const Agent& to) {
+  void connect_beside(AnyChannel& channel, const Agent& from, const Agent& to) {
     const Place place = places_.at(&to);
     const std::size_t from_thread = places_.at(&from).thread;
     std::vector<Cycle>& beside = row_beside(place.thread, from_thread);

@@ -261,7 +261,7 @@ FrameValues exact_values(const Config& config, const RunResult& result) {
   out.triangle_tests_per_ray = per_ray(static_cast<double>(tests.triangle));
   out.link_bytes_per_ray = per_ray(link_bytes(result));
   out.memory_bytes_per_ray =
-      per_ray(static_cast<double>((c.memory_lines + c.memory_lines_written) * cycle::fetched_bytes(config.memory)));
+      per_ray(static_cast<double>((c.memory.lines + c.memory.lines_written) * cycle::fetched_bytes(config.memory)));
   for (const cycle::ClassUse& use : c.uses)
     if (use.busy > 0) out.uses.push_back({use.name, exactly(over(static_cast<double>(use.busy), use.parts * cycles))});
   return out;

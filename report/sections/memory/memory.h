@@ -1,9 +1,10 @@
 #pragma once
 
 #include "core/statistics/cache_counts.h"
+#include "core/statistics/memory_counts.h"
+#include "core/statistics/ray_bytes.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "report/sections/memory/dram.h"
-#include "report/sections/memory/ray_data.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -36,11 +37,11 @@ struct Memory {
   ShapeBuffers shape_buffers;
   std::vector<Cache> caches;
   std::optional<Cache> own_caches;
-  std::uint64_t dram_lines = 0, dram_bytes = 0, dram_lines_written = 0, dram_busy_cycles = 0;
+  MemoryCounts counts;
   double dram_utilisation = 0;
-  std::optional<RayData> ray_data;
+  std::optional<RayDataBytes> ray_data;
   std::optional<CacheDrain> drain;
-  std::optional<TriangleStrips> triangle_strips;
+  std::optional<LeafStripCounts> triangle_strips;
   std::optional<Dram> dram;
 };
 
@@ -49,11 +50,7 @@ void describe(V& v, const Memory& r) {
   v.section("shape_buffers", r.shape_buffers, "use of the shape buffers of all resources");
   v.section("caches", r.caches, "use of each L2 cache");
   v.section("own_caches", r.own_caches, "use of the resources' own caches, all together");
-  v.field("dram_lines", r.dram_lines, "lines", "lines, or sectors, read from DRAM");
-  v.field("dram_bytes", r.dram_bytes, "bytes", "bytes read from DRAM");
-  v.field("dram_lines_written", r.dram_lines_written, "lines",
-          "lines written to DRAM: spilled collection entries, and data of rays and paths");
-  v.field("dram_busy_cycles", r.dram_busy_cycles, "cycles", "cycles in which DRAM moved lines");
+  describe(v, r.counts);
   v.field("dram_utilisation", r.dram_utilisation, "fraction", "fraction of the run's cycles in which DRAM moved lines");
   v.section("ray_data", r.ray_data, "data of rays and paths in memory");
   v.section("triangle_strips", r.triangle_strips, "leaves in strips of triangles");

@@ -19,6 +19,8 @@ namespace carousel::ringbus::cycle {
 /// synthetic traffic.
 template <class T>
 struct WireOf {
+  explicit WireOf(const ChannelPlace& place) : packets(place) {}
+
   Channel<T, true> packets;
   alignas(64) Occupancy queue;  ///< the receiver's
 };

@@ -23,7 +23,7 @@ class Memory final : public MemoryAgent {
   std::optional<DramUse> dram_use(Cycle) const override { return std::nullopt; }
 
  private:
-  std::uint64_t bytes() const { return (lines_ + lines_written_) * line_bytes_; }
+  std::uint64_t bytes() const { return (counts_.lines + counts_.lines_written) * line_bytes_; }
 
   std::uint64_t width_;
   std::uint64_t moved_ = 0;  // the channel is taken up to this byte of time, of which a cycle has width_

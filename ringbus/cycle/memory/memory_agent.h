@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/config/fields/memory.h"
+#include "core/statistics/memory_counts.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/dram_use.h"
@@ -40,8 +41,9 @@ class MemoryAgent : public Agent {
   /// From now on requests are appended to the log.
   void log(MemoryLog* log) { log_ = log; }
 
-  std::uint64_t lines() const { return lines_; }  ///< read
-  std::uint64_t lines_written() const { return lines_written_; }
+  /// So far; the bytes are those that it has read.
+  MemoryCounts counts() const { return {counts_.lines, counts_.lines * line_bytes_, counts_.lines_written, busy()}; }
+  std::uint64_t line_bytes() const { return line_bytes_; }  ///< of a line of its messages
   Cycle last_step() const { return last_step_; }
   /// The time at which all that it has taken so far is done.
   virtual Cycle idle_from() const = 0;
@@ -63,7 +65,7 @@ class MemoryAgent : public Agent {
   /// Counts a request that has been taken. Returns whether it is a write.
   bool count(std::uint64_t request, Cycle now) {
     const bool write = (request & kWriteLine) != 0;
-    ++(write ? lines_written_ : lines_);
+    ++(write ? counts_.lines_written : counts_.lines);
     if (log_ != nullptr) [[unlikely]]
       log_->push_back({now, (request & ~kWriteLine) * line_bytes_, static_cast<std::uint32_t>(line_bytes_), write});
     return write;
@@ -72,8 +74,8 @@ class MemoryAgent : public Agent {
   Cycle answer_latency_;
   std::uint64_t line_bytes_;
   std::vector<Client> clients_;
-  std::uint64_t lines_ = 0, lines_written_ = 0;
-  Cycle next_ = 0;  // next(), at the end of the last run()
+  MemoryCounts counts_;  // of lines only
+  Cycle next_ = 0;       // next(), at the end of the last run()
   Cycle last_step_ = 0;
   CounterSamples samples_;
   MemoryLog* log_ = nullptr;

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "ringbus/time/channel_list.h"
+
 namespace carousel::ringbus::cycle {
 
 /// A resource asks shading, with `testers.any_hit: shader`, to run the any-hit calls of some rays.
@@ -20,6 +22,14 @@ struct AnyHitAnswer {
 
   /// The ID of each ray, and the distance of its closest hit.
   std::uint64_t bytes() const { return 8 * slots.size(); }
+};
+
+struct AnyHitKinds {
+  MessageKind questions, answers;
+  /// `width` of the wires in bytes a cycle.
+  AnyHitKinds(ChannelList& list, std::uint64_t width)
+      : questions(list.carry({"any-hit questions", "resources", "shading", "wires of questions", width})),
+        answers(list.carry({"any-hit answers", "shading", "resources", "wires of answers", width})) {}
 };
 
 }  // namespace carousel::ringbus::cycle

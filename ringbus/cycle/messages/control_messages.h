@@ -4,6 +4,7 @@
 
 #include "core/types/workload.h"
 #include "ringbus/rays/ray_id.h"
+#include "ringbus/time/channel_list.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -41,6 +42,14 @@ struct CompletedRays {
 
   /// A record says where it lay, so the slots need no bytes of their own. A note has 4.
   std::uint64_t bytes() const { return rays.size() * sizeof(RayRecord) + (note == Note::kDone ? 0 : 4); }
+};
+
+struct ControlKinds {
+  MessageKind new_rays, completed;
+  /// `width` of the wires in bytes a cycle.
+  ControlKinds(ChannelList& list, std::uint64_t width)
+      : new_rays(list.carry({"new rays", "ray control", "resources", "load ports and wires of IDs", width})),
+        completed(list.carry({"completed rays", "resources", "ray control", "ports of completed rays", width})) {}
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/types/ray.h"
+#include "ringbus/time/channel_list.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -19,6 +20,14 @@ struct HelpNote {
 
   /// A job's result, light and a new ray, is as large as a record.
   std::uint64_t bytes() const { return shaded ? 4 + sizeof(RayRecord) : 4; }
+};
+
+struct HelpKinds {
+  MessageKind jobs, notes;
+  /// `width` of the wires in bytes a cycle.
+  HelpKinds(ChannelList& list, std::uint64_t width)
+      : jobs(list.carry({"shading jobs", "shading", "resources", "wires of jobs", width})),
+        notes(list.carry({"notes and results", "resources", "shading", "wires of notes", width})) {}
 };
 
 }  // namespace carousel::ringbus::cycle

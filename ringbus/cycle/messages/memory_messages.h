@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/config/fields/memory.h"
+#include "ringbus/time/channel_list.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -40,6 +41,65 @@ struct PushedShapes {
 /// All lines of the request are there.
 struct FetchAnswer {
   std::uint32_t tag = 0;
+  std::uint32_t size = 0;  ///< bytes of these lines; the tag goes with them
+  std::uint64_t bytes() const { return size; }
 };
+
+/// Bytes of a request for a line, or of the address of one that is written.
+inline constexpr std::uint64_t kAddressBytes = 8;
+
+/// Bytes a cycle of the ports of an L2 and of a resource's own cache.
+inline std::uint64_t l2_port_bytes(const MemoryConfig& config) {
+  return fetched_bytes(config) * static_cast<std::uint64_t>(config.l2_lines_per_cycle * config.l2_banks);
+}
+inline std::uint64_t l1_port_bytes(const MemoryConfig& config) {
+  return fetched_bytes(config) * static_cast<std::uint64_t>(config.l1_lines_per_cycle);
+}
+
+/// Between the resources and their caches.
+struct FetchKinds {
+  MessageKind requests, data;
+  /// `width` of the wires of requests in bytes a cycle.
+  FetchKinds(ChannelList& list, const MemoryConfig& config, std::uint64_t width)
+      : requests(list.carry({"shape requests", "resources", "L2", "request wires", width})),
+        data(config.l1_kib > 0 ? list.carry({"shape data", "L1", "resources", "L1's port", l1_port_bytes(config)})
+                               : list.carry({"shape data", "L2", "resources", "L2's port", l2_port_bytes(config)})) {}
+};
+
+/// Between the L2s and memory. Entries that do not fit collection storage, and data of rays and paths, go to an L2 with
+/// their requests, and on to memory in whole lines: `written`, whose addresses are among the requests.
+struct MemoryKinds {
+  MessageKind requests, lines, written;
+  MemoryKinds(ChannelList& list, const MemoryConfig& config)
+      : requests(list.carry({"line requests", "L2", "DRAM", "address wires",
+                             kAddressBytes * static_cast<std::uint64_t>(config.l2_lines_per_cycle * config.l2_banks)},
+                            kAddressBytes)),
+        lines(list.carry({"lines", "DRAM", "L2", "DRAM's data wires"}, fetched_bytes(config))),
+        written(list.carry({"written lines", "L2", "DRAM", "DRAM's data wires"})) {}
+};
+
+/// Between ray control and shading and the L2s, where data of rays and paths are in memory.
+struct RayDataKinds {
+  MessageKind requests, data;
+  RayDataKinds(ChannelList& list, const MemoryConfig& config, std::uint64_t width)
+      : requests(list.carry({"requests of ray data", "shading", "L2", "request wires", width})),
+        data(list.carry({"ray data", "L2", "shading", "L2's port", l2_port_bytes(config)})) {}
+};
+
+/// Between the resources' own caches and the L2s.
+struct OwnCacheKinds {
+  MessageKind requests, lines;
+  OwnCacheKinds(ChannelList& list, const MemoryConfig& config)
+      : requests(list.carry({"line requests of L1", "L1", "L2", "address wires",
+                             kAddressBytes * static_cast<std::uint64_t>(config.l1_lines_per_cycle)},
+                            kAddressBytes)),
+        lines(list.carry({"lines for L1", "L2", "L1", "L2's port", l2_port_bytes(config)}, fetched_bytes(config))) {}
+};
+
+/// From the L2s to resources that have not asked (`memory.fetch: multicast`).
+inline MessageKind pushed_kind(ChannelList& list, const MemoryConfig& config) {
+  return list.carry({"multicast shapes", "L2", "resources", "wires of answers",
+                     static_cast<std::uint64_t>(config.l2_answer_bytes_per_cycle)});
+}
 
 }  // namespace carousel::ringbus::cycle

@@ -72,8 +72,8 @@ void RayData::fetch(Group&& group, std::span<const Place> places, Cycle now) {
     const ShapeSpan span = record_at(resource, slot);
     port_of(resource).write(span, now);
     port_of(resource).request(span, index, now);
-    use_.records.written += span.bytes;
-    use_.records.read += span.bytes;
+    bytes_.records_written += span.bytes;
+    bytes_.records_read += span.bytes;
   }
 }
 
@@ -81,7 +81,7 @@ void RayData::completed(ResourceId resource, std::span<const std::uint32_t> slot
   if (!keeps_records()) return;
   for (const std::uint32_t slot : slots) {
     port_of(resource).write(record_at(resource, slot), now);
-    use_.records.written += sizeof(RayRecord);
+    bytes_.records_written += sizeof(RayRecord);
   }
 }
 
@@ -96,7 +96,7 @@ bool RayData::fetch_state(const RayResult& ray, Cycle now) {
   waiting_[index].ray = ray;
   const ShapeSpan span = state_at(ray.tag.path, bytes);
   port_of(span).request(span, index, now);
-  use_.states.read += span.bytes;
+  bytes_.states_read += span.bytes;
   return true;
 }
 
@@ -108,7 +108,7 @@ void RayData::made(std::span<const RayRequest> rays, Cycle now) {
     if (bytes == 0) continue;
     const ShapeSpan span = state_at(ray.tag.path, bytes);
     port_of(span).write(span, now);
-    use_.states.written += bytes;
+    bytes_.states_written += bytes;
   }
 }
 
@@ -127,7 +127,7 @@ void RayData::shaded(const HitBatch& rays, Cycle now) {
     waiting_[index].pixel = *pixels_[i];
     const ShapeSpan span = pixel_at(*pixels_[i]);
     port_of(span).request(span, index, now);
-    use_.film.read += span.bytes;
+    bytes_.film_read += span.bytes;
   }
 }
 
@@ -154,7 +154,7 @@ void RayData::take(Cycle now, HitBatch& rays, std::vector<Group>& groups) {
       } else {
         const ShapeSpan span = pixel_at(waiting.pixel);
         port.write(span, now);
-        use_.film.written += span.bytes;
+        bytes_.film_written += span.bytes;
       }
     }
   }

@@ -7,10 +7,10 @@
 
 #include "core/config/fields/memory.h"
 #include "core/config/fields/topology.h"
+#include "core/statistics/ray_bytes.h"
 #include "core/types/workload.h"
 #include "ringbus/cycle/shapes/shape_port.h"
 #include "ringbus/protocol/machine.h"
-#include "ringbus/results/ray_data_use.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -67,7 +67,7 @@ class RayData {
   /// Takes the answers: appends rays whose state has come to `rays`, and groups whose records have come to `groups`.
   void take(Cycle now, HitBatch& rays, std::vector<Group>& groups);
 
-  const RayDataUse& use() const { return use_; }
+  const RayDataBytes& bytes() const { return bytes_; }
   std::uint64_t lines() const;  ///< asked for
 
  private:
@@ -96,7 +96,7 @@ class RayData {
   std::vector<std::uint32_t> free_;                   // unused places in waiting_
   std::vector<std::uint32_t> in_flight_;              // by path: rays that have not been shaded
   std::vector<std::optional<std::uint32_t>> pixels_;  // pixels of the rays that are being shaded
-  RayDataUse use_;
+  RayDataBytes bytes_;
 };
 
 }  // namespace carousel::ringbus::cycle

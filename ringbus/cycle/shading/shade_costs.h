@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "core/statistics/shading_counts.h"
 #include "core/types/workload.h"
 #include "ringbus/cycle/shading/shade_queues.h"
 #include "ringbus/cycle/shading/shading_settings.h"
-#include "ringbus/results/cycle_result.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -30,8 +30,8 @@ class ShadeCosts {
   /// A completed ray: its shader and the effects of its surface. Counts it as begun.
   Cycle begin(const RayResult& ray) {
     const ShadeWork work = workload_.extra_work(ray);
-    products_ += work.products;
-    lookups_ += work.lookups;
+    counts_.products += work.products;
+    counts_.lookups += work.lookups;
     const Cycle products = products_per_cycle_ == 0 ? 0 : ceil_div(work.products, products_per_cycle_);
     return shade_ + lookup_ * work.lookups + products;
   }
@@ -46,24 +46,22 @@ class ShadeCosts {
       for (std::size_t j = i; j < vector.rays.size(); ++j)
         if (vector.shaders[j] == *here) longest = std::max(longest, begin(vector.rays[j]));
       sum += longest;
-      ++vectors_.runs;
+      ++counts_.vectors.runs;
     }
-    ++vectors_.vectors;
-    vectors_.rays += vector.rays.size();
+    ++counts_.vectors.vectors;
+    counts_.vectors.rays += vector.rays.size();
     return sum;
   }
 
-  std::uint64_t products() const { return products_; }
-  std::uint64_t lookups() const { return lookups_; }
-  const ShadeVectorCounts& vectors() const { return vectors_; }
+  /// All but the workers' time.
+  const ShadingCounts& counts() const { return counts_; }
 
  private:
   const Workload& workload_;
   Cycle shade_, lookup_, any_hit_;
   std::uint64_t products_per_cycle_;
   std::size_t lanes_;
-  std::uint64_t products_ = 0, lookups_ = 0;
-  ShadeVectorCounts vectors_;
+  ShadingCounts counts_;
 };
 
 }  // namespace carousel::ringbus::cycle

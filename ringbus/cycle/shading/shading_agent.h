@@ -63,7 +63,11 @@ class ShadingAgent final : public Agent {
   /// Worker-cycles spent on jobs that are done.
   Cycle busy() const { return workers_.busy(); }
   /// The work of all rays that began to be shaded.
-  const ShadeCosts& costs() const { return workers_.costs(); }
+  ShadingCounts counts() const {
+    ShadingCounts out = workers_.costs().counts();
+    out.busy = busy();
+    return out;
+  }
   /// How long rays were in slots, from being given one until their hit came to shading.
   const Log2Histogram& residence() const { return placement_.slots().residence(); }
   const Trace& trace() const { return trace_; }

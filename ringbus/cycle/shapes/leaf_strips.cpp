@@ -41,14 +41,14 @@ void LeafStrips::add(const accel::Accel& accel, accel::NodeRef leaf) {
   if (!leaf.is_procedural()) {
     const StripCounts counts = triangle_strips(triangles_of(accel, leaf));
     bytes = counts.vertices * kVertexBytes + triangles * kReferenceBytes;
-    use_.triangles += triangles;
-    use_.strips += counts.strips;
-    use_.vertices += counts.vertices;
+    counts_.triangles += triangles;
+    counts_.strips += counts.strips;
+    counts_.vertices += counts.vertices;
   }
-  begin_[leaf.first_block()] = use_.bytes;
+  begin_[leaf.first_block()] = counts_.bytes;
   bytes_[leaf.first_block()] = bytes;
-  use_.bytes += bytes;
-  use_.separate_bytes += separate;
+  counts_.bytes += bytes;
+  counts_.separate_bytes += separate;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "accel/structure/accel.h"
-#include "ringbus/results/strip_use.h"
+#include "core/statistics/memory_counts.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -20,15 +20,15 @@ class LeafStrips {
   bool holds(accel::NodeRef leaf) const { return !bytes_.empty() && bytes_[leaf.first_block()] > 0; }
   std::uint64_t begin(accel::NodeRef leaf) const { return begin_[leaf.first_block()]; }  ///< behind the nodes
   std::uint32_t bytes(accel::NodeRef leaf) const { return bytes_[leaf.first_block()]; }
-  std::uint64_t bytes() const { return use_.bytes; }  ///< bytes of all leaves
-  const StripUse& use() const { return use_; }
+  std::uint64_t bytes() const { return counts_.bytes; }  ///< bytes of all leaves
+  const LeafStripCounts& counts() const { return counts_; }
 
  private:
   void add(const accel::Accel& accel, accel::NodeRef leaf);
 
   std::vector<std::uint64_t> begin_;  // by first block
   std::vector<std::uint32_t> bytes_;  // likewise; 0: no leaf
-  StripUse use_;
+  LeafStripCounts counts_;
 };
 
 }  // namespace carousel::ringbus::cycle

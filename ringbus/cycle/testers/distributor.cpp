@@ -68,6 +68,7 @@ void Distributor::test(Cycle at, std::span<const std::uint32_t> slots, const Int
     const Cycle read = hand_out(tester, in_cycle) + latency_ + 1;
     const Cycle ready = std::max({read, shapes_there, tester.free_at});
     const Cycle in_turn = std::max(ready, allowed), start = std::max(in_turn, tester.results.free_at());
+    if (i == 0 && start >= shapes_there) counts_.shapes_taken += shape_bytes;
     counts_.held_back += in_turn - ready;
     counts_.results_full += start - in_turn;
     counts_.ahead += start < older_done ? 1 : 0;

@@ -26,11 +26,18 @@ class TrafficRun {
         topology_(config.topology),
         flow_(config.topology.flow, topology_.direct()),
         plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources()) {
-    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
-      wires_.push_back(std::make_unique<WireOf<TrafficToken>>());
-      if (flow_.counts_deliveries()) acks_.push_back(std::make_unique<Channel<TrafficAck>>());
-    }
     const TrafficConfig& traffic = config.workload.traffic;
+    const auto width = static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle);
+    const MessageKind packets = channels_.carry({"packets", "resources", "neighbours", "links", width},
+                                                static_cast<std::uint64_t>(traffic.packet_bytes));
+    const MessageKind deliveries =
+        channels_.carry({"deliveries", "resources", "neighbours", "wires beside the links", width}, kAckBytes);
+    for (const Topology::Wire& wire : topology_.wires()) {
+      const ChannelEnds ends{wire.from.value, wire.to.value, link_latency()};
+      wires_.push_back(std::make_unique<WireOf<TrafficToken>>(channels_.at(packets, ends)));
+      if (flow_.counts_deliveries())
+        acks_.push_back(std::make_unique<Channel<TrafficAck>>(channels_.at(deliveries, ends)));
+    }
     const TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
     for (std::uint32_t r = 0; r < topology_.resources(); ++r) {
       TrafficSource source(traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ResourceId(r),
@@ -46,12 +53,9 @@ class TrafficRun {
     auto last_report = start;
     bool stopped = false;
     WakeupTable wakeups(parts);
-    for (std::size_t i = 0; i < wires_.size(); ++i) {
-      const Topology::Wire& wire = topology_.wires()[i];
-      const TrafficNode &from = *nodes_[wire.from.value], &to = *nodes_[wire.to.value];
-      wakeups.connect(wires_[i]->packets, from, to);
-      if (!acks_.empty()) wakeups.connect(*acks_[i], from, to);
-    }
+    std::vector<const Agent*> agents;
+    for (const auto& node : nodes_) agents.push_back(node.get());
+    channels_.connect(wakeups, agents);
     run_windows(parts, wakeups, link_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
@@ -72,6 +76,8 @@ class TrafficRun {
   }
 
  private:
+  static constexpr std::uint64_t kAckBytes = 4;  // source and direction
+
   Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
 
   TrafficNode::Ports ports_of(ResourceId id) const {
@@ -137,6 +143,7 @@ class TrafficRun {
   Topology topology_;
   FlowRules flow_;
   TrafficPlan plan_;
+  ChannelList channels_;
   std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires()
   std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;    // beside them
   std::vector<std::unique_ptr<TrafficNode>> nodes_;

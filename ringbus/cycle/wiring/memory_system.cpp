@@ -4,23 +4,32 @@
 
 namespace carousel::ringbus::cycle {
 
-MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients,
+MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
+                           const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
+                           const std::vector<ShapeCache::Client>& clients,
                            const std::vector<ShapeCache::Client>& shading)
-    : shared_by_(static_cast<std::size_t>(config.memory.shared_by)) {
+    : shared_by_(static_cast<std::size_t>(config.shared_by)) {
+  const auto channel = [&](auto& into, MessageKind kind, const ChannelEnds& ends) -> Channel<std::uint64_t>& {
+    return *into.emplace_back(std::make_unique<Channel<std::uint64_t>>(list.at(kind, ends)));
+  };
   std::vector<MemoryAgent::Client> memory_clients;
   std::vector<ShapeCache::OwnCache> own;
-  const MemoryConfig own_config = ShapeCache::own_cache(config.memory);
-  for (std::size_t r = 0; r < clients.size() && config.memory.l1_kib > 0; ++r) {
-    Channel<std::uint64_t>& down = *own_down_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
-    Channel<std::uint64_t>& up = *own_up_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
+  const MemoryConfig own_config = ShapeCache::own_cache(config);
+  for (std::size_t r = 0; r < clients.size() && own_kinds; ++r) {
+    const std::uint32_t l1 = agents.own_cache(r), l2 = agents.cache_behind(r);
+    Channel<std::uint64_t>& down =
+        channel(own_down_, own_kinds->requests, {l1, l2, MemoryAgent::request_latency(own_config)});
+    Channel<std::uint64_t>& up = channel(own_up_, own_kinds->lines, {l2, l1, ShapeCache::answer_latency(config)});
     own_.push_back(std::make_unique<ShapeCache>(own_config, std::vector{clients[r]}, down, up));
     own_.back()->ask_a_cache();
     own.push_back({&down, &up});
   }
   for (std::size_t first = 0; first < clients.size(); first += shared_by_) {
     const std::size_t last = std::min(clients.size(), first + shared_by_);
-    Channel<std::uint64_t>& down = *to_memory_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
-    Channel<std::uint64_t>& up = *from_memory_.emplace_back(std::make_unique<Channel<std::uint64_t>>());
+    const std::uint32_t l2 = agents.cache_behind(first), dram = agents.memory();
+    Channel<std::uint64_t>& down =
+        channel(to_memory_, kinds.requests, {l2, dram, MemoryAgent::request_latency(config)});
+    Channel<std::uint64_t>& up = channel(from_memory_, kinds.lines, {dram, l2, MemoryAgent::answer_latency(config)});
     const auto sharers = [&](const auto& all) {
       return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
                          all.begin() + static_cast<std::ptrdiff_t>(last));
@@ -29,10 +38,13 @@ MemorySystem::MemorySystem(const Config& config, const std::vector<ShapeCache::C
     if (own.empty()) askers = sharers(clients);
     if (!shading.empty()) askers.push_back(shading[caches_.size()]);
     const std::vector<ShapeCache::OwnCache> before = own.empty() ? std::vector<ShapeCache::OwnCache>{} : sharers(own);
-    caches_.push_back(std::make_unique<ShapeCache>(config.memory, before, std::move(askers), down, up));
+    caches_.push_back(std::make_unique<ShapeCache>(config, before, std::move(askers), down, up));
     memory_clients.push_back({&down, &up});
   }
-  memory_ = make_memory(config.memory, config.engine.clock_mhz, std::move(memory_clients));
+  memory_ = make_memory(config, clock_mhz, std::move(memory_clients));
+  const auto width = static_cast<std::uint64_t>(memory_->peak_bytes_per_cycle());
+  list.set_width(kinds.lines, width);
+  list.set_width(kinds.written, width);
 }
 
 void MemorySystem::warm(const WarmCaches& from) {
@@ -42,32 +54,25 @@ void MemorySystem::warm(const WarmCaches& from) {
 
 CacheDrain MemorySystem::drain(Cycle end) {
   CacheDrain out;
-  const std::uint64_t before = memory_->lines_written();
+  const MemoryCounts before = memory_->counts();
   memory_->log(nullptr);
   const Cycle begin = std::max(end, memory_->last_step());
   for (const auto& cache : caches_) cache->drain(begin);
   memory_->run(kNever);
-  out.lines = memory_->lines_written() - before;
+  const MemoryCounts after = memory_->counts();
+  out.lines = after.lines_written - before.lines_written;
+  out.bytes = out.lines * memory_->line_bytes();
   if (out.lines > 0) out.cycles = memory_->idle_from() - end;
   return out;
 }
 
-void MemorySystem::connect(WakeupTable& wakeups) const {
-  for (std::size_t r = 0; r < own_.size(); ++r) {
-    wakeups.connect(*own_down_[r], *own_[r], *caches_[r / shared_by_]);
-    wakeups.connect(*own_up_[r], *caches_[r / shared_by_], *own_[r]);
+void MemorySystem::count_written(ByteRow& row) const {
+  for (const auto& cache : caches_) {
+    const CacheCounts& counts = cache->statistics();
+    row.messages += counts.written + counts.written_back + counts.drained;
   }
-  for (std::size_t c = 0; c < caches_.size(); ++c) {
-    wakeups.connect(*to_memory_[c], *caches_[c], *memory_);
-    wakeups.connect(*from_memory_[c], *memory_, *caches_[c]);
-  }
-}
-
-Cycle MemorySystem::least_latency(const MemoryConfig& config) {
-  const MemoryConfig nearest = ShapeCache::nearest(config);
-  return std::min({ShapeCache::request_latency(nearest), ShapeCache::answer_latency(nearest),
-                   ShapeCache::request_latency(config), ShapeCache::answer_latency(config),
-                   MemoryAgent::request_latency(config), MemoryAgent::answer_latency(config)});
+  row.bytes = row.messages * memory_->line_bytes();
+  row.bytes_taken = memory_->counts().lines_written * memory_->line_bytes();
 }
 
 }  // namespace carousel::ringbus::cycle

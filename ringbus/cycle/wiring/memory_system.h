@@ -1,25 +1,31 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <vector>
 
-#include "core/config/config.h"
+#include "core/config/fields/memory.h"
+#include "core/statistics/memory_counts.h"
 #include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
+#include "ringbus/cycle/wiring/agent_numbers.h"
 #include "ringbus/results/class_use.h"
-#include "ringbus/results/ray_data_use.h"
-#include "ringbus/time/wakeup_table.h"
+#include "ringbus/time/channel_list.h"
 
 namespace carousel::ringbus::cycle {
 
 /// The caches, each shared by some neighbouring resources, and the memory behind them.
 class MemorySystem {
  public:
-  /// `clients` by resource. `shading`: by L2, or none.
-  MemorySystem(const Config& config, const std::vector<ShapeCache::Client>& clients,
-               const std::vector<ShapeCache::Client>& shading = {});
-  static std::size_t shared_caches(const Config& config) {
-    return static_cast<std::size_t>((config.topology.resources - 1) / config.memory.shared_by + 1);
+  /// `clients` by resource. `shading`: by L2, or none. `clock_mhz`: engine.clock_mhz. With own caches there are kinds
+  /// of messages for them.
+  MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
+               const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
+               const std::vector<ShapeCache::Client>& clients, const std::vector<ShapeCache::Client>& shading = {});
+  static std::size_t shared_caches(const MemoryConfig& config, std::int64_t resources) {
+    return static_cast<std::size_t>((resources - 1) / config.shared_by + 1);
   }
 
   const std::vector<std::unique_ptr<ShapeCache>>& caches() const { return caches_; }
@@ -33,22 +39,10 @@ class MemorySystem {
   const MemoryAgent& memory() const { return *memory_; }
   /// Before the start. A machine with other caches than those that held the lines starts cold.
   void warm(const WarmCaches& from);
-  /// Calls `body` with the channels to memory and back, cache by cache.
-  template <class Body>
-  void for_each_channel(const Body& body) const {
-    for (std::size_t c = 0; c < caches_.size(); ++c) body(*to_memory_[c], *from_memory_[c]);
-  }
-  /// Calls `body` with the channels from each resource's own cache down and back.
-  template <class Body>
-  void for_each_own_channel(const Body& body) const {
-    for (std::size_t r = 0; r < own_.size(); ++r) body(*own_down_[r], *own_up_[r]);
-  }
   /// The run was over at `end`: caches write back all that they hold for memory.
   CacheDrain drain(Cycle end);
-  /// Announces arrivals between caches and memory.
-  void connect(WakeupTable& wakeups) const;
-  /// The least latency of any channel to a cache or to memory.
-  static Cycle least_latency(const MemoryConfig& config);
+  /// Fills in the row of the lines that the caches have written to memory.
+  void count_written(ByteRow& row) const;
 
  private:
   std::size_t shared_by_;

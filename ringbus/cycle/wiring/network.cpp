@@ -1,17 +1,21 @@
 #include "ringbus/cycle/wiring/network.h"
 
-#include <algorithm>
 #include <utility>
 
 namespace carousel::ringbus::cycle {
 
-Network::Network(const Machine& machine, const LinkConfig& link, const FaultsConfig& faults, std::int64_t contexts)
+Network::Network(ChannelList& list, const Machine& machine, const LinkConfig& link, const FaultsConfig& faults,
+                 std::int64_t contexts)
     : machine_(machine),
       faults_(faults),
       depth_(static_cast<std::uint32_t>(link.depth)),
       egress_places_(static_cast<std::size_t>(contexts) + 1) {
   const Topology& topology = machine.topology;
-  for (std::size_t i = 0; i < topology.wires().size(); ++i) wires_.push_back(std::make_unique<Wire>());
+  const MessageKind packets =
+      list.carry({"packets", "resources", "neighbours", "links", static_cast<std::uint64_t>(link.bytes_per_cycle)});
+  for (const Topology::Wire& wire : topology.wires())
+    wires_.push_back(std::make_unique<Wire>(
+        list.at(packets, {wire.from.value, wire.to.value, static_cast<Cycle>(wire.latency_cycles)})));
   for (std::uint32_t hub = 0; hub < topology.hubs().size(); ++hub) {
     NodePorts ports = ports_at(ResourceId(static_cast<std::uint32_t>(topology.resources()) + hub));
     hubs_.push_back(make_hub(hub, topology, machine.packets, std::move(ports.in), std::move(ports.out)));
@@ -33,13 +37,6 @@ Network::NodePorts Network::ports_at(ResourceId node) const {
     if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, latency(i)));
   }
   return ports;
-}
-
-Cycle Network::least_latency() const {
-  Cycle least = kNever;
-  for (const Topology::Wire& wire : machine_.topology.wires())
-    least = std::min(least, static_cast<Cycle>(wire.latency_cycles));
-  return least;
 }
 
 }  // namespace carousel::ringbus::cycle

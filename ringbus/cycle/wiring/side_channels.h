@@ -1,71 +1,76 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <optional>
 
+#include "core/config/fields/memory.h"
 #include "ringbus/cycle/messages/side_ports.h"
-#include "ringbus/time/agent.h"
-#include "ringbus/time/wakeup_table.h"
+#include "ringbus/cycle/shapes/shape_cache.h"
+#include "ringbus/cycle/wiring/agent_numbers.h"
 
 namespace carousel::ringbus::cycle {
+
+/// The kinds of messages beside the links. Resources that help to shade, any-hit calls and multicast have kinds in
+/// every machine or none, as the ledger shows them.
+struct SideKinds {
+  ControlKinds control;
+  FetchKinds fetch;
+  AnyHitKinds any_hit;
+  HelpKinds help;
+  std::optional<MessageKind> pushed{};
+};
+
+/// The latencies of the wires beside the links.
+struct SideLatencies {
+  Cycle control, request, answer;
+  SideLatencies(const LinkConfig& link, const MemoryConfig& nearest)
+      : control(control_latency(link)),
+        request(ShapeCache::request_latency(nearest)),
+        answer(ShapeCache::answer_latency(nearest)) {}
+};
 
 /// The channels of one resource beside the links.
 class SideChannels {
  public:
-  /// `helps`: the resource shades when it has nothing to test; `calls_shader`: it asks shading for any-hit calls.
-  /// `multicasts`: its cache sends it shapes for which others have asked.
-  SideChannels(bool helps, bool calls_shader, bool multicasts) {
-    if (multicasts) pushed_ = std::make_unique<Channel<PushedShapes>>();
-    if (helps) help_ = std::make_unique<Help>();
-    if (calls_shader) any_hit_ = std::make_unique<AnyHit>();
+  /// `helps`: the resource shades when it has nothing to test; `calls_shader`: it asks shading for any-hit calls. With
+  /// a kind of pushed shapes its cache sends it shapes for which others have asked.
+  SideChannels(ChannelList& list, const SideKinds& kinds, const SideLatencies& latency, const AgentNumbers& agents,
+               std::uint32_t resource, bool helps, bool calls_shader)
+      : new_rays_(list.at(kinds.control.new_rays, {agents.shading(), resource, latency.control, true})),
+        completed_(list.at(kinds.control.completed, {resource, agents.shading(), latency.control, true})),
+        fetch_(list.at(kinds.fetch.requests, {resource, agents.nearest_cache(resource), latency.request})),
+        fetched_(list.at(kinds.fetch.data, {agents.nearest_cache(resource), resource, latency.answer, true})) {
+    const ChannelEnds to_shading{resource, agents.shading(), latency.control},
+        from_shading{agents.shading(), resource, latency.control, true};
+    if (kinds.pushed)
+      pushed_ = std::make_unique<Channel<PushedShapes>>(
+          list.at(*kinds.pushed, {agents.nearest_cache(resource), resource, latency.answer, true}));
+    if (helps) {
+      jobs_ = std::make_unique<Channel<ShadeJob>>(list.at(kinds.help.jobs, from_shading));
+      notes_ = std::make_unique<Channel<HelpNote>>(list.at(kinds.help.notes, to_shading));
+    }
+    if (calls_shader) {
+      questions_ = std::make_unique<Channel<AnyHitQuestion>>(list.at(kinds.any_hit.questions, to_shading));
+      answers_ = std::make_unique<Channel<AnyHitAnswer>>(list.at(kinds.any_hit.answers, from_shading));
+    }
   }
 
   SidePorts ports() {
-    SidePorts side{&new_rays_, &completed_, &fetch_, &fetched_};
-    if (help_) {
-      side.jobs = &help_->jobs;
-      side.help = &help_->notes;
-    }
-    if (any_hit_) {
-      side.questions = &any_hit_->questions;
-      side.answers = &any_hit_->answers;
-    }
-    side.pushed = pushed_.get();
-    return side;
-  }
-
-  /// Announces arrivals to the agents at either end.
-  void connect(WakeupTable& wakeups, const Agent& resource, const Agent& shading, const Agent& cache) {
-    wakeups.connect_beside(new_rays_, shading, resource);
-    wakeups.connect_beside(completed_, resource, shading);
-    wakeups.connect(fetch_, resource, cache);
-    wakeups.connect_beside(fetched_, cache, resource);
-    if (pushed_) wakeups.connect_beside(*pushed_, cache, resource);
-    if (any_hit_) {
-      wakeups.connect(any_hit_->questions, resource, shading);
-      wakeups.connect_beside(any_hit_->answers, shading, resource);
-    }
-    if (!help_) return;
-    wakeups.connect_beside(help_->jobs, shading, resource);
-    wakeups.connect(help_->notes, resource, shading);
+    return {&new_rays_,   &completed_,      &fetch_,        &fetched_,    jobs_.get(),
+            notes_.get(), questions_.get(), answers_.get(), pushed_.get()};
   }
 
  private:
-  struct Help {
-    Channel<ShadeJob> jobs;
-    Channel<HelpNote> notes;
-  };
-  struct AnyHit {
-    Channel<AnyHitQuestion> questions;
-    Channel<AnyHitAnswer> answers;
-  };
-
   Channel<NewRays> new_rays_;
   Channel<CompletedRays> completed_;
   Channel<FetchRequest> fetch_;
   Channel<FetchAnswer> fetched_;
   std::unique_ptr<Channel<PushedShapes>> pushed_;
-  std::unique_ptr<Help> help_;
-  std::unique_ptr<AnyHit> any_hit_;
+  std::unique_ptr<Channel<ShadeJob>> jobs_;
+  std::unique_ptr<Channel<HelpNote>> notes_;
+  std::unique_ptr<Channel<AnyHitQuestion>> questions_;
+  std::unique_ptr<Channel<AnyHitAnswer>> answers_;
 };
 
 }  // namespace carousel::ringbus::cycle

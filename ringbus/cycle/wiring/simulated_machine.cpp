@@ -20,6 +20,14 @@ std::optional<std::uint32_t> local_packets(const Config& config) {
   return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
 }
 
+/// The resources and hubs have the topology's numbers.
+AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory) {
+  const auto resources = static_cast<std::uint32_t>(topology.resources());
+  return {resources + static_cast<std::uint32_t>(topology.hubs().size()),
+          static_cast<std::uint32_t>(MemorySystem::shared_caches(memory, resources)), memory.l1_kib > 0 ? resources : 0,
+          static_cast<std::uint32_t>(memory.shared_by)};
+}
+
 ShadingSettings shading_settings(const Config& config) {
   return {config.shading,
           config.bundles,
@@ -40,23 +48,27 @@ bool calls_shader(const Config& config, const accel::Accel& accel) {
 
 SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& accel, float scene_size,
                                    Workload& workload, bool statistics, const Observation& observed)
-    : config_(config),
-      shared_(config, accel, scene_size, local_packets(config)),
+    : shared_(config, accel, scene_size, local_packets(config)),
       shape_memory_(accel, config.accuracy, config.bvh, config.memory),
       shape_blocks_(config.collections.key == CollectionKey::kBlock
                         ? std::make_unique<const ShapeBlocks>(
                               accel, shape_memory_, static_cast<std::uint64_t>(config.collections.block_bytes))
                         : nullptr),
-      network_(shared_, config.topology.link, config.faults, config.testers.contexts) {
+      network_(channels_, shared_, config.topology.link, config.faults, config.testers.contexts),
+      kinds_(machine_kinds(channels_, config.topology.link, config.memory,
+                           has_distributor(config) ? &config.testers.distributor : nullptr,
+                           config.collections.traversal)),
+      numbers_(agent_numbers(shared_.topology, config.memory)) {
+  const SideLatencies latencies(config.topology.link, ShapeCache::nearest(config.memory));
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ = std::make_unique<Recorder>(config.testers, has_distributor(config), shared_, observed);
   std::vector<SidePorts> sides;
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
     const ResourceId id(r);
-    channels_.push_back(std::make_unique<SideChannels>(config.shading.idle_resources_shade, calls_shader(config, accel),
-                                                       config.memory.fetch == MemoryConfig::Fetch::kMulticast));
-    const SidePorts& side = sides.emplace_back(channels_.back()->ports());
+    sides_.push_back(std::make_unique<SideChannels>(channels_, kinds_.side, latencies, numbers_, r,
+                                                    config.shading.idle_resources_shade, calls_shader(config, accel)));
+    const SidePorts& side = sides.emplace_back(sides_.back()->ports());
     cache_clients.push_back({side.fetch, side.fetched, side.pushed});
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     settings.blocks = shape_blocks_.get();
@@ -73,10 +85,11 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
   if (recorder_) shading_->record(recorder_->of_shading());
   std::vector<ShapeCache::Client> ray_data_clients;
-  if (RayData::wanted(config.memory)) {
+  if (kinds_.ray_data) {
     std::vector<SidePorts> ends;
-    for (std::size_t i = 0; i < MemorySystem::shared_caches(config); ++i) {
-      const SidePorts& end = ends.emplace_back(ray_data_.emplace_back(std::make_unique<RayDataChannels>())->ports());
+    for (std::uint32_t c = 0; c < numbers_.caches; ++c) {
+      ray_data_.push_back(std::make_unique<RayDataChannels>(channels_, *kinds_.ray_data, config.memory, numbers_, c));
+      const SidePorts& end = ends.emplace_back(ray_data_.back()->ports());
       ray_data_clients.push_back({end.fetch, end.fetched});
     }
     const RayStore& store = *shared_.stores.front();
@@ -84,7 +97,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     const RayData::Settings settings{config.memory, config.topology.link, records};
     shading_->keep_in_memory(std::make_unique<RayData>(settings, workload, ends));
   }
-  memory_ = std::make_unique<MemorySystem>(config, cache_clients, ray_data_clients);
+  memory_ = std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
+                                           config.engine.clock_mhz, cache_clients, ray_data_clients);
   memory_->memory().sample(observed.samples);
   memory_->memory().log(observed.memory);
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
@@ -118,16 +132,17 @@ void SimulatedMachine::close(Cycle end) const {
 }
 
 void SimulatedMachine::connect(WakeupTable& wakeups) const {
-  network_.connect(wakeups, resources_);
-  for (std::size_t r = 0; r < resources_.size(); ++r)
-    channels_[r]->connect(wakeups, *resources_[r], *shading_, memory_->cache_of(r));
-  for (std::size_t c = 0; c < ray_data_.size(); ++c) ray_data_[c]->connect(wakeups, *shading_, *memory_->caches()[c]);
-  memory_->connect(wakeups);
-}
-
-Cycle SimulatedMachine::lookahead() const {
-  return std::min(
-      {control_latency(config_.topology.link), network_.least_latency(), MemorySystem::least_latency(config_.memory)});
+  std::vector<const Agent*> agents;  // in the order of AgentNumbers
+  const auto add = [&](const auto& some) {
+    for (const auto& one : some) agents.push_back(one.get());
+  };
+  add(resources_);
+  add(network_.hubs());
+  add(memory_->caches());
+  add(memory_->own_caches());
+  agents.push_back(&memory_->memory());
+  agents.push_back(shading_.get());
+  channels_.connect(wakeups, agents);
 }
 
 std::string SimulatedMachine::describe_waits() const {

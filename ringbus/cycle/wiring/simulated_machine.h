@@ -11,19 +11,22 @@
 #include "ringbus/cycle/shapes/shape_blocks.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/tile/resource_agent.h"
+#include "ringbus/cycle/wiring/agent_numbers.h"
+#include "ringbus/cycle/wiring/machine_kinds.h"
 #include "ringbus/cycle/wiring/memory_system.h"
 #include "ringbus/cycle/wiring/network.h"
 #include "ringbus/cycle/wiring/ray_data_channels.h"
 #include "ringbus/cycle/wiring/recorder.h"
 #include "ringbus/cycle/wiring/side_channels.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/time/channel_list.h"
 
 namespace carousel::ringbus::cycle {
 
 /// A whole machine under virtual time: every agent, and the channels between them.
 class SimulatedMachine {
  public:
-  /// Keeps references to the configuration, the structure and the workload.
+  /// Keeps references to the structure and the workload.
   SimulatedMachine(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                    bool statistics, const Observation& observed);
 
@@ -37,7 +40,9 @@ class SimulatedMachine {
   Recorder* recorder() const { return recorder_.get(); }
   const ShadingAgent& shading() const { return *shading_; }
   const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
-  const std::vector<std::unique_ptr<SideChannels>>& channels() const { return channels_; }  ///< by resource
+  /// Every channel between two agents.
+  const ChannelList& channels() const { return channels_; }
+  const MachineKinds& kinds() const { return kinds_; }
 
   /// Shares the agents out over threads. Neighbours go to the same thread, and each cache to the thread of its
   /// resources; shading and memory go to the last thread.
@@ -45,14 +50,12 @@ class SimulatedMachine {
   /// Announces all arrivals but those of credits, for which agents look when they need any.
   void connect(WakeupTable& wakeups) const;
   /// The least latency of any channel.
-  Cycle lookahead() const;
+  Cycle lookahead() const { return channels_.least_latency(); }
   /// Every agent that waits for something, a line each, and the circle of waits if there is one; empty when all are at
   /// rest.
   std::string describe_waits() const;
   /// After close(), and when all else has been counted: caches write back all that they hold for memory.
   CacheDrain drain(Cycle end) const { return memory_->drain(end); }
-  /// By L2: those of ray control and shading to the data of rays and paths, if any is in memory.
-  const std::vector<std::unique_ptr<RayDataChannels>>& ray_data() const { return ray_data_; }
   /// The run is over at `end`: all agents make their last readings.
   void close(Cycle end) const;
   /// Calls `body` with each wire and the port by which it leaves its node.
@@ -76,12 +79,14 @@ class SimulatedMachine {
       record(port, recorder_->of_link(node, out[port]));
   }
 
-  const Config& config_;
   Machine shared_;
   ShapeMemory shape_memory_;
   std::unique_ptr<const ShapeBlocks> shape_blocks_;  // null: collections are keyed by nodes
+  ChannelList channels_;
   Network network_;
-  std::vector<std::unique_ptr<SideChannels>> channels_;     // by resource
+  MachineKinds kinds_;
+  AgentNumbers numbers_;
+  std::vector<std::unique_ptr<SideChannels>> sides_;        // by resource
   std::vector<std::unique_ptr<RayDataChannels>> ray_data_;  // by L2
   std::vector<std::unique_ptr<ResourceAgent>> resources_;
   std::unique_ptr<Recorder> recorder_;  // null: nothing is recorded

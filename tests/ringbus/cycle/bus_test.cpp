@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/load/load.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -51,7 +52,7 @@ class FourOnABus {
  private:
   Topology topology_;
   std::vector<Packet> packets_;
-  std::array<Wire, 4> up_, down_;
+  std::array<LooseWire, 4> up_, down_;
 };
 
 TEST(BusBroadcast, OneCrossingReachesAllWhoHaveRaysOfThePacket) {

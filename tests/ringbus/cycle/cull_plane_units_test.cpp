@@ -8,6 +8,7 @@
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/verdict/what_if.h"
 #include "tests/ringbus/support/test_machine.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -92,8 +93,8 @@ TEST(PlaneBytes, StandBehindTheirNodesWithoutOverlap) {
 TEST(PlaneBytes, TakePlaceInTheShapeBuffer) {
   MemoryConfig config;
   config.shape_buffer_kib = 4;
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
   SidePorts ports;
   ports.fetch = &requests;
   ports.fetched = &answers;

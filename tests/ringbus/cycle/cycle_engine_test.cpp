@@ -118,9 +118,9 @@ TEST(CycleLedgers, LedgersAddUp) {
       EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
       misses += cache.misses + cache.write_fetches;
     }
-    EXPECT_EQ(misses, c.memory_lines);
-    EXPECT_LE(c.memory_busy, c.cycles);
-    EXPECT_LE(c.shading_busy, c.cycles * static_cast<std::uint64_t>(shader_workers(cell.config)));
+    EXPECT_EQ(misses, c.memory.lines);
+    EXPECT_LE(c.memory.busy, c.cycles);
+    EXPECT_LE(c.shading.busy, c.cycles * static_cast<std::uint64_t>(shader_workers(cell.config)));
   }
   EXPECT_GT(transforms, 0u);
   EXPECT_GT(jobs, 0u);

@@ -11,6 +11,7 @@
 #include "ringbus/cycle/shapes/shape_cache.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/testers/unit_bank.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -160,7 +161,7 @@ MemoryConfig memory_config() {
 
 TEST(Memory, TakesItsLatencyAndTheTimeToMoveALine) {
   const MemoryConfig config = memory_config();
-  Channel<std::uint64_t> requests, answers;
+  LooseChannel<std::uint64_t> requests, answers;
   Memory memory(config, {{&requests, &answers}});
   // A request that a cache sends at time 0 arrives half of the latency later.
   const Cycle there = Memory::request_latency(config);
@@ -177,9 +178,9 @@ TEST(Memory, TakesItsLatencyAndTheTimeToMoveALine) {
 /// A cache with a client and a memory that are played by the test.
 struct CacheBench {
   MemoryConfig config = memory_config();
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
-  Channel<std::uint64_t> down, up;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
+  LooseChannel<std::uint64_t> down, up;
   ShapeCache cache{config, {{&requests, &answers}}, down, up};
 
   void ask(Cycle at, FetchRequest request) { requests.send(at + ShapeCache::request_latency(config), request); }
@@ -229,7 +230,7 @@ Token packet(std::uint32_t id, std::uint16_t cycles) {
 }
 
 TEST(Ports, TailArrivesAfterLatencyAndWidths) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 4, 2, 8);
   const InPort in{&wire, 4};
   out.push(packet(1, 3), 10, false);
@@ -240,7 +241,7 @@ TEST(Ports, TailArrivesAfterLatencyAndWidths) {
 }
 
 TEST(Ports, CutThroughShowsTheHead) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 4, 2, 8);
   out.push(packet(1, 3), 10, true);
   EXPECT_TRUE(out.send(10));
@@ -248,7 +249,7 @@ TEST(Ports, CutThroughShowsTheHead) {
 }
 
 TEST(Ports, APacketOccupiesTheLink) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 4, 8, 8);
   for (std::uint32_t id : {1, 2}) out.push(packet(id, 3), 0, false);
   EXPECT_TRUE(out.send(0));
@@ -259,7 +260,7 @@ TEST(Ports, APacketOccupiesTheLink) {
 }
 
 TEST(Ports, ACreditNeedsTheLinksLatencyToGetBack) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 4, 1, 8);
   InPort in{&wire, 4};
   for (std::uint32_t id : {1, 2}) out.push(packet(id, 1), 0, false);
@@ -280,7 +281,7 @@ TEST(Ports, ACreditNeedsTheLinksLatencyToGetBack) {
 // The ledger of a link's queue against counting, cycle by cycle, what has come and not been taken.
 TEST(Ports, QueueLedgerIsWhatCountingEveryCycleGives) {
   std::mt19937 random(7);
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 3, 1000, 1000);
   InPort in{&wire, 3};
   std::vector<Cycle> arrivals;
@@ -304,7 +305,7 @@ TEST(Ports, QueueLedgerIsWhatCountingEveryCycleGives) {
 }
 
 TEST(Ports, OpenLeavesTheReceiverPlaces) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 4, 2, 1);
   EXPECT_TRUE(out.open(0, 2));
   out.launch(packet(1, 2), 0, false);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/ringbus/support/test_machine.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -64,10 +65,10 @@ class LoneTile {
   Machine machine_;
   TestScene& scene_;
   ShapeMemory memory_;
-  Channel<NewRays> new_rays_;
-  Channel<CompletedRays> completed_;
-  Channel<FetchRequest> fetch_;
-  Channel<FetchAnswer> fetched_;
+  LooseChannel<NewRays> new_rays_;
+  LooseChannel<CompletedRays> completed_;
+  LooseChannel<FetchRequest> fetch_;
+  LooseChannel<FetchAnswer> fetched_;
   Cycle last_fetch_ = 0;
   IndependentTile tile_;
 };

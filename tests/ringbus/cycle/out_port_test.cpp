@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/fabric/ports.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -8,7 +9,7 @@ namespace {
 // A packet that waits to be injected under flow: bubble counts the free places of the next queue, and each credit may
 // be the one that it waits for.
 TEST(OutPort, TellsOfACreditBeforeThePacketInItsQueueMayLeave) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 5, 3, 4);
   Token token;
   token.link_cycles = 20;
@@ -23,7 +24,7 @@ TEST(OutPort, TellsOfACreditBeforeThePacketInItsQueueMayLeave) {
 // A packet waits for a credit from the cycle in which it could have gone, whether or not anybody looked then.
 TEST(OutPort, CountsTheWaitForACreditFromTheCycleInWhichThePacketCouldHaveGone) {
   for (const bool looks : {false, true}) {
-    Wire wire;
+    LooseWire wire;
     OutPort out(wire, 1, 1, 4);
     Token token;
     token.link_cycles = 4;

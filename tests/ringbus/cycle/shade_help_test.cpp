@@ -5,6 +5,7 @@
 
 #include "ringbus/cycle/shading/shade_helpers.h"
 #include "tests/ringbus/support/test_machine.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -21,8 +22,8 @@ Config helping_machine() {
 }
 
 struct Wires {
-  Channel<ShadeJob> jobs;
-  Channel<HelpNote> notes;
+  LooseChannel<ShadeJob> jobs;
+  LooseChannel<HelpNote> notes;
   SidePorts ports() {
     SidePorts side;
     side.jobs = &jobs;
@@ -148,7 +149,7 @@ TEST(IdleResourcesShade, LiftsAMachineThatShadingLimits) {
       shading += helped.result.cycle->tiles[r].states[kShading];
     }
     // Workers and resources together shade every ray once, and the workers make the camera rays.
-    EXPECT_GE(shading + helped.result.cycle->shading_busy, 200 * (scene.rays() + 2000));
+    EXPECT_GE(shading + helped.result.cycle->shading.busy, 200 * (scene.rays() + 2000));
     EXPECT_LT(helped.result.cycle->cycles * 2, alone.result.cycle->cycles) << enum_name(shape);
     const Outcome together = run_with(scene, config, shape, true, 3);
     ASSERT_EQ(together.fault, "");

@@ -66,11 +66,11 @@ TEST(CycleSeriesTotals, AddsUpToTheTotalsOfTheRun) {
       EXPECT_EQ(total(series, part, quantity), static_cast<double>(expected)) << part << ", " << quantity;
     };
     is("machine", "rays completed", out.result.rays_completed);
-    is("machine", "shader workers busy", c.shading_busy);
+    is("machine", "shader workers busy", c.shading.busy);
     const MemoryConfig& memory = cell.config.memory;
     const auto line = static_cast<std::uint64_t>(memory.l2_sector_bytes.value_or(memory.line_bytes));
-    is("machine", "bytes of DRAM", (c.memory_lines + c.memory_lines_written) * line);
-    dram += c.memory_lines;
+    is("machine", "bytes of DRAM", (c.memory.lines + c.memory.lines_written) * line);
+    dram += c.memory.lines;
     std::uint64_t packet_cycles = 0, link_bytes = 0;
     double held = 0;
     for (std::size_t r = 0; r < c.tiles.size(); ++r) {

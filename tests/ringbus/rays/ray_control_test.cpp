@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/config/config.h"
+
 namespace carousel::ringbus {
 namespace {
 

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/ringbus/time/loose_channel.h"
+
 namespace carousel::ringbus {
 namespace {
 
@@ -24,7 +26,7 @@ bool sends_next(std::mt19937& random, int step) {
 
 TEST(Channel, IsAQueueWhateverItsLength) {
   std::mt19937 random(1);
-  Channel<int> channel;
+  LooseChannel<int> channel;
   std::deque<Sent> expected;
   Cycle last = 0;
   std::size_t most = 0;
@@ -54,7 +56,7 @@ TEST(Channel, IsAQueueWhateverItsLength) {
 }
 
 TEST(Channel, BringsForwardAcrossBlocks) {
-  Channel<int> channel;
+  LooseChannel<int> channel;
   for (int i = 0; i < 40; ++i) channel.send(static_cast<Cycle>(i), i);
   channel.bring_forward(35);
   EXPECT_EQ(channel.next(), 35u);
@@ -69,7 +71,7 @@ TEST(Channel, BringsForwardAcrossBlocks) {
 // The sender learns of as many places by each cycle as the receiver has given back for that cycle.
 TEST(Channel, PlacesComeBackWhenTheReceiverSays) {
   std::mt19937 random(2);
-  Channel<int, true> channel;
+  LooseChannel<int, true> channel;
   std::deque<Cycle> expected;
   Cycle now = 0;
   std::size_t waiting = 0;
@@ -94,7 +96,7 @@ TEST(Channel, PlacesComeBackWhenTheReceiverSays) {
 
 TEST(Channel, PlacesComeBackInOrder) {
   if (!kChecked) GTEST_SKIP() << "only checked builds look";
-  Channel<int, true> channel;
+  LooseChannel<int, true> channel;
   for (int i = 0; i < 2; ++i) channel.send(0, i);
   channel.take(5);
   EXPECT_THROW(channel.take(4), std::logic_error);
@@ -103,7 +105,7 @@ TEST(Channel, PlacesComeBackInOrder) {
 // Sender and receiver on two threads, which read what the other publishes.
 TEST(Channel, ServesTwoThreads) {
   constexpr int kThings = 100'000;
-  Channel<std::vector<int>, true> channel;
+  LooseChannel<std::vector<int>, true> channel;
   std::thread receiver([&] {
     for (int i = 0; i < kThings;) {
       if (channel.next() == kNever) continue;

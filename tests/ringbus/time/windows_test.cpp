@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/ringbus/time/loose_channel.h"
+
 namespace carousel::ringbus {
 namespace {
 
@@ -130,7 +132,7 @@ class Listener final : public Agent {
 
 /// Two that send to each other, of which the first one starts.
 struct TwoListeners {
-  Channel<int> there, back;
+  LooseChannel<int> there, back;
   Listener a{back, there, 3, true}, b{there, back, 7, false};
 
   std::vector<std::vector<Agent*>> parts(std::size_t threads) {

@@ -6,6 +6,7 @@
 
 #include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/testers/unit_bank.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -72,7 +73,7 @@ TEST(QueueingTheory, AUnitBankIsAnMD1Queue) {
 /// Sends what arrives over a link, and calls `arrived(number, at)` for each packet's tail, whose place is free at once.
 template <class Arrived>
 void run_link(double load, const Arrived& arrived, std::vector<Cycle>& created) {
-  Wire wire;
+  LooseWire wire;
   OutPort out(wire, 1, 4, kCustomers);
   InPort in{&wire, 1};
   PoissonArrivals arrivals(load);

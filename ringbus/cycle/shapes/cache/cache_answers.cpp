@@ -28,7 +28,8 @@ void CacheAnswers::send(const Answer& answer, Cycle now) {
   if (answer.client < own_caches_.size())
     own_caches_[answer.client].answers->send(arrival, answer.line);
   else
-    clients_[answer.client - own_caches_.size()].answers->send(arrival, {answer.tag});
+    clients_[answer.client - own_caches_.size()].answers->send(
+        arrival, {answer.tag, static_cast<std::uint32_t>(answer.lines * line_bytes_)});
   if (answer.push > 0) [[unlikely]]
     send_push(answer.push - 1, arrival);
 }

@@ -7,6 +7,7 @@
 #include "core/config/load/load.h"
 #include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -65,9 +66,9 @@ struct Bench {
   }
 
   MemoryConfig config;
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
-  Channel<std::uint64_t> down, up;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
+  LooseChannel<std::uint64_t> down, up;
   ShapeCache cache{config, {{&requests, &answers}}, down, up};
   Events answered, asked;
   CacheCounts before;
@@ -231,9 +232,9 @@ TEST(OwnCache, AsksTheL2ForLines) {
                    "l1_lines_per_cycle: 2, l2_lines_per_cycle: 1, l2_latency_cycles: 31, dram_latency_cycles: 101}\n",
                    "cache.yaml"})
           .config.memory;
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
-  Channel<std::uint64_t> down, up, to_memory, from_memory;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
+  LooseChannel<std::uint64_t> down, up, to_memory, from_memory;
   ShapeCache own(ShapeCache::own_cache(config), std::vector{ShapeCache::Client{&requests, &answers}}, down, up);
   own.ask_a_cache();
   ShapeCache l2(config, std::vector{ShapeCache::OwnCache{&down, &up}}, {}, to_memory, from_memory);

@@ -9,6 +9,7 @@
 #include "ringbus/cycle/fabric/packet_size.h"
 #include "ringbus/cycle/tile/walk/subtree_visits.h"
 #include "tests/ringbus/support/timed_machine.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -51,8 +52,8 @@ struct VisitBench {
     return now;
   }
 
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
   ShapeMemory memory;
   std::unique_ptr<ShapeBuffer> buffer;
   std::unique_ptr<Tester> tester;
@@ -231,7 +232,7 @@ TEST(SingleShape, BringsItsPlanesAndTheLeavesItsNodeHolds) {
 // ---- order
 
 TEST(ChannelOrder, ArrivalsDoNotGoBackInTime) {
-  Channel<int> channel;
+  LooseChannel<int> channel;
   channel.send(5, 1);
   channel.send(5, 2);
   if constexpr (kChecked) {

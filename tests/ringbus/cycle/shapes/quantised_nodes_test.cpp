@@ -116,7 +116,7 @@ TEST(QuantisedNodes, ChangeNoHitAndFetchLess) {
     const Outcome full = run_text(scene, machine + "width: " + width + "}\n"),
                   small = run_text(scene, machine + "width: " + width + ", storage: quantised}\n");
     // run_text() has compared the hits with the reference tracer's.
-    EXPECT_LT(small.result.cycle->memory_lines, full.result.cycle->memory_lines);
+    EXPECT_LT(small.result.cycle->memory.lines, full.result.cycle->memory.lines);
   }
 }
 

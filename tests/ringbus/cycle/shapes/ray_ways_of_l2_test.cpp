@@ -5,6 +5,7 @@
 
 #include "core/config/load/load.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -34,10 +35,10 @@ struct TwoClients {
   }
 
   MemoryConfig config;
-  Channel<FetchRequest> requests[2];
-  Channel<FetchAnswer> answers[2];
-  Channel<PushedShapes> pushed[2];
-  Channel<std::uint64_t> down, up;
+  LooseChannel<FetchRequest> requests[2];
+  LooseChannel<FetchAnswer> answers[2];
+  LooseChannel<PushedShapes> pushed[2];
+  LooseChannel<std::uint64_t> down, up;
   ShapeCache cache{
       config,
       std::vector<ShapeCache::Client>{{&requests[0], &answers[0], &pushed[0]}, {&requests[1], &answers[1], &pushed[1]}},

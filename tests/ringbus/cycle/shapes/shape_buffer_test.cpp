@@ -5,6 +5,7 @@
 
 #include "ringbus/cycle/shapes/shape_room.h"
 #include "tests/ringbus/support/timed_machine.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -46,9 +47,9 @@ struct BufferBench {
   }
   Users ready() { return std::exchange(buffer->ready(), {}); }
 
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
-  Channel<PushedShapes> pushed;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
+  LooseChannel<PushedShapes> pushed;
   std::vector<std::uint32_t> waiting;
   std::unique_ptr<ShapeBuffer> buffer;
 };

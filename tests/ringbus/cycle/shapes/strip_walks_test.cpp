@@ -8,6 +8,7 @@
 #include "ringbus/cycle/shapes/shape_buffer.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
 #include "tests/ringbus/support/timed_machine.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -51,9 +52,9 @@ struct WalkBench {
   }
 
   MemoryConfig config;
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
-  Channel<std::uint64_t> down, up;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
+  LooseChannel<std::uint64_t> down, up;
   ShapeCache cache{config, {{&requests, &answers}}, down, up};
   LinesInTime answered, asked;
 };
@@ -119,8 +120,8 @@ TEST(StripEnds, ARequestNamesAStrideInsteadOfALength) {
 /// A shape buffer of 1 KiB: 16 places.
 TEST(StripEnds, ABufferKeepsRoomForTheLongestStripUntilTheEndIsThere) {
   const MemoryConfig config = flagged_memory("shape_buffer_kib: 1");
-  Channel<FetchRequest> requests;
-  Channel<FetchAnswer> answers;
+  LooseChannel<FetchRequest> requests;
+  LooseChannel<FetchAnswer> answers;
   SidePorts side;
   side.fetch = &requests;
   side.fetched = &answers;

@@ -7,6 +7,7 @@
 #include "ringbus/cycle/shapes/cache/memory_requests.h"
 #include "ringbus/cycle/shapes/cache/pending_requests.h"
 #include "ringbus/cycle/shapes/cache/tag_array.h"
+#include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
 namespace {
@@ -59,7 +60,7 @@ TEST(CacheBanks, LinesTakeTurnsAndEachBankHasItsMissRegisters) {
 }
 
 TEST(MemoryRequests, LeaveAtTheirTimesAndInTheOrderInWhichTheyWereMade) {
-  Channel<std::uint64_t> channel;
+  LooseChannel<std::uint64_t> channel;
   MemoryRequests requests(channel, 5, false);
   requests.add(12, 1);
   requests.add(10, 2);
@@ -76,8 +77,8 @@ TEST(MemoryRequests, LeaveAtTheirTimesAndInTheOrderInWhichTheyWereMade) {
 TEST(CacheAnswers, FollowOneAnotherOnTheWires) {
   MemoryConfig config = stage_config();
   config.l2_answer_bytes_per_cycle = 32;
-  Channel<FetchAnswer> answers;
-  Channel<std::uint64_t> to_own_cache;
+  LooseChannel<FetchAnswer> answers;
+  LooseChannel<std::uint64_t> to_own_cache;
   const std::vector<OwnCacheClient> own_caches{{nullptr, &to_own_cache}};
   const std::vector<CacheClient> clients{{nullptr, &answers}};
   CacheCounts counts;
@@ -95,8 +96,8 @@ TEST(CacheAnswers, FollowOneAnotherOnTheWires) {
 
 TEST(CacheAnswers, GoToTheOthersToo) {
   const MemoryConfig config = stage_config();
-  Channel<FetchAnswer> answers[3];
-  Channel<PushedShapes> pushed[3];
+  LooseChannel<FetchAnswer> answers[3];
+  LooseChannel<PushedShapes> pushed[3];
   const std::vector<OwnCacheClient> own_caches;
   std::vector<CacheClient> clients;
   for (std::size_t c = 0; c < 3; ++c) clients.push_back({nullptr, &answers[c], &pushed[c]});
