@@ -27,12 +27,6 @@ void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, co
   }
 }
 
-const TestersConfig& testers_of(const Config& c, std::int64_t resource) {
-  for (const ResourceOverride& one : c.topology.overrides)
-    if (one.resource == resource) return one.testers;
-  return c.testers;
-}
-
 /// A place of a link's queue: a packet, and what travels in its place.
 double place_bytes(const Config& c) {
   const auto rays = static_cast<double>(c.packets.rays), boxes = static_cast<double>(c.bvh.width);
@@ -59,7 +53,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     parts[part].mm2 += kib * cost(c, Cost::kSramArea);
   };
   for (std::int64_t r = 0; r < c.topology.resources; ++r)
-    add_units(parts[AreaPart::kUnits], c, scene, testers_of(c, r));
+    add_units(parts[AreaPart::kUnits], c, scene, testers_of(c.testers, c.topology, r));
   const double slots = n * static_cast<double>(c.rays.slots_per_resource);
   store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
   if (c.rays.banks > 0)  // each bank has two ports

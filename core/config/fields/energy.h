@@ -6,7 +6,7 @@
 
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
-#include "core/types/cost_table.h"
+#include "core/costs/cost_table.h"
 
 namespace carousel {
 

@@ -104,6 +104,14 @@ struct TopologyConfig {
   std::vector<ResourceOverride> overrides;
 };
 
+/// The testers of a resource: its own, or those of the whole machine.
+inline const TestersConfig& testers_of(const TestersConfig& machine, const TopologyConfig& topology,
+                                       std::int64_t resource) {
+  for (const ResourceOverride& one : topology.overrides)
+    if (one.resource == resource) return one.testers;
+  return machine;
+}
+
 namespace config {
 
 template <class V>

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/types/cost_table.h"
+#include "core/costs/cost_table.h"
 #include "tests/app/keys/base_machines.h"
 
 namespace carousel {

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "core/types/cost_table.h"
+#include "core/costs/cost_table.h"
 #include "tests/app/support/program.h"
 
 namespace carousel::energy_test {

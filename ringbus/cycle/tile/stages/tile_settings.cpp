@@ -8,11 +8,9 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// The testers of a resource: the machine's or its own, slowed by a fault, at the levels of accuracy.
-TestersConfig testers_of(const Config& config, ResourceId id) {
-  TestersConfig testers = config.testers;
-  for (const ResourceOverride& one : config.topology.overrides)
-    if (one.resource == id.value) testers = one.testers;
+/// The testers of a resource, slowed by a fault, at the levels of accuracy.
+TestersConfig testers_in_use(const Config& config, ResourceId id) {
+  TestersConfig testers = testers_of(config.testers, config.topology, id.value);
   slow_down(testers, config.faults, id);
   return at_levels(testers, config.accuracy);
 }
@@ -21,7 +19,7 @@ TestersConfig testers_of(const Config& config, ResourceId id) {
 
 TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
                            const Observation& observed) {
-  const TestersConfig testers = testers_of(config, id);
+  const TestersConfig testers = testers_in_use(config, id);
   return {resource_settings(config, scene_size),
           testers,
           config.accuracy,
