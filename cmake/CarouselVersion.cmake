@@ -19,3 +19,15 @@ endif()
 # On the one file that uses them: a new commit recompiles nothing else.
 set_source_files_properties(core/system/version.cpp PROPERTIES COMPILE_DEFINITIONS
   "CAROUSEL_VERSION=\"${PROJECT_VERSION}\";CAROUSEL_COMMIT=\"${CAROUSEL_COMMIT}\";CAROUSEL_COMPILER=\"${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}\";CAROUSEL_BUILD_TYPE=\"${CMAKE_BUILD_TYPE}\"")
+
+# What program and modules have to have in common (core/module/module.h).
+set(CAROUSEL_MODULE_BUILD "${PROJECT_VERSION} ${CAROUSEL_COMMIT}, ${CMAKE_CXX_COMPILER_ID} ${CMAKE_CXX_COMPILER_VERSION}, ${CMAKE_BUILD_TYPE}")
+if(CAROUSEL_CHECKED)
+  string(APPEND CAROUSEL_MODULE_BUILD ", checked")
+endif()
+if(CAROUSEL_SANITIZE)
+  string(REPLACE "," "+" sanitizers "${CAROUSEL_SANITIZE}")
+  string(APPEND CAROUSEL_MODULE_BUILD ", ${sanitizers}")
+endif()
+set_source_files_properties(core/module/module_build.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON COMPILE_DEFINITIONS
+  "CAROUSEL_MODULE_BUILD=\"${CAROUSEL_MODULE_BUILD}\"")

@@ -75,6 +75,7 @@ std::string usage_hint(const CLI::App& program, int argc, const char* const* arg
 }
 
 struct Arguments {
+  bool verbose = false;
   LogArguments log;
   AccuracyArguments accuracy;
   RunArguments run;
@@ -92,7 +93,11 @@ struct Arguments {
 void add_commands(CLI::App& program, Arguments& arguments) {
   program.require_subcommand(1);
   program.set_help_flag("-h,--help", "Print this help and exit");
-  program.set_version_flag("--version", version_text, "Print version, commit and compiler, and exit");
+  const CLI::Option* verbose =
+      program.add_flag("--verbose", arguments.verbose, "With --version: also the modules, each with what it brings");
+  program.set_version_flag(
+      "--version", [verbose] { return verbose->count() > 0 ? version_text() + "\n" + modules_text() : version_text(); },
+      "Print version, commit and compiler, and exit");
   add_run(program, arguments.run);
   CLI::App* sweep = program.add_subcommand("sweep", "Simulate one configuration with many values of some keys");
   add_config_options(*sweep, arguments.sweep);

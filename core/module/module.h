@@ -2,24 +2,27 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
+
+#include "core/system/error.h"
 
 namespace carousel {
 
 /// What a module tells of itself. A module is a shared library `NAME.so` that the program opens when it first needs it:
 /// glue between a large library of others and a struct of functions, its interface, which a header of the program
-/// declares. The first two members stay where they are in all versions.
+/// declares. docs/modules.md has the rules. The first two members stay where they are in all versions.
 struct ModuleInfo {
   static constexpr std::uint64_t kMagic = 0x6c75646f4d726143;  ///< "CarModul", in memory on a little-endian machine
 
   std::uint64_t magic = kMagic;
-  const char* build = nullptr;         ///< module_build() of the program that the module was built with
+  const char* build = nullptr;         ///< module_build() of the module
   const char* name = nullptr;          ///< the name of its file, without .so
-  const char* brings = nullptr;        ///< for a list: "pictures in 20 formats"
+  const char* brings = nullptr;        ///< for a list: "pictures of 20 formats"
   std::string (*library)() = nullptr;  ///< the library under it, with the version that was loaded
-  const void* functions = nullptr;     ///< the struct whose kModule is the name; lives as long as the process
+  const void* functions = nullptr;     ///< the struct whose kModule is the name; lives for ever
+  std::string (*answer)(std::string_view question) = nullptr;  ///< for module_process.h; may throw std::exception
 };
 
 /// The build that this program, or this module, is of: version, commit, compiler, kind. Interfaces hold C++ types of
@@ -29,14 +32,17 @@ const char* module_build();
 
 /// A module is not there, is of another build, or a library that it needs cannot be loaded. The message names the
 /// module, its file or the folder, the reason, and the package that brings it. Exit status 2.
-class ModuleError : public std::runtime_error {
+class ModuleError : public FileError {
  public:
-  using std::runtime_error::runtime_error;
+  using FileError::FileError;
 };
 
 /// The folder with the modules of this program: `CAROUSEL_MODULES` of the environment if it is set, else `modules` in
 /// the build folder, or `lib/carousel/modules` beside the folder of an installed program.
 std::filesystem::path module_folder();
+
+/// The file of a module, which is there and is of this build. Opens nothing. Throws ModuleError.
+std::filesystem::path module_file(const std::string& name);
 
 /// Opens a module, once; later calls return what the first has found, which stays open until the process ends. Any
 /// thread. Throws ModuleError.
@@ -56,7 +62,7 @@ struct FoundModule {
   const ModuleInfo* info = nullptr;  ///< if it is open
 };
 
-/// All modules by name, which it opens: for `carousel --version --verbose`. Throws nothing but std::bad_alloc.
+/// All modules by name, which it opens: for `carousel --version --verbose`.
 std::vector<FoundModule> find_modules();
 
 }  // namespace carousel

@@ -1,0 +1,30 @@
+# Parts of the program that are opened on demand (core/module/module.h, docs/modules.md): one shared library a module, in
+# build/X/modules, and installed in lib/carousel/modules. A module is built where its library is found, and is glue only:
+# it holds no other code of the program than this.
+add_library(carousel_module_base STATIC core/module/module_build.cpp core/system/error.cpp core/system/plain_text.cpp)
+target_link_libraries(carousel_module_base PUBLIC carousel_options glm::glm fmt::fmt)
+target_include_directories(carousel_module_base PUBLIC ${CMAKE_CURRENT_SOURCE_DIR})
+set_target_properties(carousel_module_base PROPERTIES POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+                      VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF)
+
+set(CAROUSEL_MODULE_FOLDER ${CMAKE_CURRENT_BINARY_DIR}/modules)
+add_custom_target(carousel_modules)
+
+# What all modules have in common.
+function(carousel_module name)
+  cmake_parse_arguments(PARSE_ARGV 1 module "" "" "SOURCES;LIBRARIES")
+  set(target carousel_module_${name})
+  add_library(${target} MODULE ${module_SOURCES})
+  target_link_libraries(${target} PRIVATE carousel_module_base ${module_LIBRARIES})
+  # Names of its libraries stay its own: the program may hold the same in another version.
+  target_link_options(${target} PRIVATE LINKER:--exclude-libs,ALL)
+  set_target_properties(${target} PROPERTIES PREFIX "" OUTPUT_NAME ${name} LIBRARY_OUTPUT_DIRECTORY ${CAROUSEL_MODULE_FOLDER}
+                        CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON UNITY_BUILD OFF)
+  add_dependencies(carousel_modules ${target})
+endfunction()
+
+# The process in which modules work on data of strangers.
+add_executable(carousel_module_process modules/process/main.cpp)
+target_link_libraries(carousel_module_process PRIVATE carousel_core)
+set_target_properties(carousel_module_process PROPERTIES OUTPUT_NAME process RUNTIME_OUTPUT_DIRECTORY ${CAROUSEL_MODULE_FOLDER})
+add_dependencies(carousel_modules carousel_module_process)
