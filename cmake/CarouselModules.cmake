@@ -28,3 +28,21 @@ add_executable(carousel_module_process modules/process/main.cpp)
 target_link_libraries(carousel_module_process PRIVATE carousel_core)
 set_target_properties(carousel_module_process PROPERTIES OUTPUT_NAME process RUNTIME_OUTPUT_DIRECTORY ${CAROUSEL_MODULE_FOLDER})
 add_dependencies(carousel_modules carousel_module_process)
+
+# -- pictures: OpenImageIO
+find_package(OpenImageIO CONFIG QUIET)
+if(OpenImageIO_FOUND)
+  # Debian's target names an include folder of OpenCV that need not be there, which CMake refuses.
+  get_target_property(found OpenImageIO::OpenImageIO INTERFACE_INCLUDE_DIRECTORIES)
+  set(folders "")
+  foreach(folder IN LISTS found)
+    if(EXISTS ${folder})
+      list(APPEND folders ${folder})
+    endif()
+  endforeach()
+  set_property(TARGET OpenImageIO::OpenImageIO PROPERTY INTERFACE_INCLUDE_DIRECTORIES ${folders})
+  carousel_module(pictures SOURCES modules/pictures/pictures_module.cpp modules/pictures/read_picture.cpp
+                  modules/pictures/write_picture.cpp LIBRARIES OpenImageIO::OpenImageIO)
+else()
+  message(STATUS "No module pictures: libopenimageio-dev is missing; PNG, JPEG, WebP and EXR need none")
+endif()

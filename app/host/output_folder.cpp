@@ -27,9 +27,9 @@ namespace {
 
 constexpr const char* kConfigFile = "config.resolved.yaml";  // all commands write it
 
-/// The files of a command, by Results; the first is its result, which appears last.
-constexpr std::array<std::array<std::string_view, 5>, 3> kFiles{{
-    {"report.json", "report.html", "image.png", "image.exr", "hits.csv"},
+/// The files of a command, by Results; the first is its result, which appears last. A run also has pictures.
+constexpr std::array<std::array<std::string_view, 3>, 3> kFiles{{
+    {"report.json", "report.html", "hits.csv"},
     {"accuracy.json", "accuracy.html"},
     {"stress.json", "stress.html"},
 }};
@@ -38,7 +38,13 @@ std::string_view result_of(Results results) {
   return kFiles[static_cast<std::size_t>(results)].front();
 }
 
+bool is_picture(std::string_view name) {
+  constexpr std::string_view kStem = "image.";
+  return name.starts_with(kStem) && enum_value<PictureFile>(name.substr(kStem.size()));
+}
+
 bool is_file_of(Results results, std::string_view name) {
+  if (results == Results::kRun && is_picture(name)) return true;
   const auto& files = kFiles[static_cast<std::size_t>(results)];
   return !name.empty() && std::find(files.begin(), files.end(), name) != files.end();
 }

@@ -6,6 +6,8 @@
 #include <limits>
 #include <random>
 
+#include <fmt/format.h>
+
 #include "app/run/memory_need.h"
 #include "core/system/executor.h"
 #include "report/csv/ray_csv.h"
@@ -17,6 +19,7 @@ namespace carousel::app {
 RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits)
     : seed_(static_cast<std::uint64_t>(config.image.seed)),
       exposure_(config.image.exposure),
+      files_(config.image.files),
       order_(static_cast<std::uint32_t>(config.image.width), static_cast<std::uint32_t>(config.image.height),
              static_cast<std::uint32_t>(config.image.samples)) {
   const auto workers = static_cast<std::size_t>(shader_workers(config));
@@ -38,6 +41,7 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
     list_ = std::make_unique<RayListWorkload>(std::move(rays), workers, prepared.all_hits.get());
     frame_rays_ = list_->size();
   } else {
+    shading::require_picture_files(files_);
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
     if (first_hits != nullptr) {
       tracer_->set_first_hits(first_hits);
@@ -198,8 +202,9 @@ std::optional<RasterCounts> RenderJob::raster() const {
 void RenderJob::write_images(const std::filesystem::path& folder) const {
   if (!tracer_) return;
   const std::vector<float> rgb = tracer_->linear_rgb();
-  shading::write_png(folder / "image.png", tracer_->width(), tracer_->height(), rgb, exposure_);
-  shading::write_exr(folder / "image.exr", tracer_->width(), tracer_->height(), rgb);
+  for (const PictureFile format : files_)
+    shading::write_picture(folder / fmt::format("image.{}", enum_name(format)), format, tracer_->width(),
+                           tracer_->height(), rgb, exposure_);
 }
 
 }  // namespace carousel::app

@@ -74,7 +74,7 @@ class RenderJob {
   /// Counts and time of the rasteriser; absent if rays found the first hits.
   std::optional<RasterCounts> raster() const;
   std::optional<double> raster_seconds() const { return raster_seconds_; }
-  /// Writes image.png and image.exr if there is a picture. Pixels that `sampling` has not drawn are black.
+  /// Writes the files of image.files if there is a picture. Pixels that `sampling` has not drawn are black.
   void write_images(const std::filesystem::path& folder) const;
 
  private:
@@ -93,6 +93,7 @@ class RenderJob {
   ringbus::Transport* ranks_ = nullptr;
   std::uint64_t frame_rays_, seed_;
   float exposure_;
+  std::vector<PictureFile> files_;
   shading::PixelOrder order_;
 };
 

@@ -45,7 +45,7 @@ std::string values_text(const Json& schema) {
   if (!schema["type"].is_string()) return "value";
   const std::string type = schema["type"];
   if (type == "object") return "map";
-  if (type == "array") return "list";
+  if (type == "array") return schema["items"].contains("enum") ? "list of " + values_text(schema["items"]) : "list";
   if (type == "string") return "text";
   if (type == "boolean") return fmt::format("`true`{}, `false`", engines_text(schema, "true"));
   const bool above = schema.contains("exclusiveMinimum");

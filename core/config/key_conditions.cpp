@@ -35,6 +35,7 @@ constexpr Row kRows[] = {
     {"image.samples", kPicture},
     {"image.max_depth", kPicture},
     {"image.exposure", kPicture},
+    {"image.files", kPicture},
     {"image.seed", kDrawn},
     {"engine.clock_mhz", kClock},
     {"engine.what_if", kCycle},

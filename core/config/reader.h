@@ -71,6 +71,15 @@ class Reader : public RowVisitor<Reader> {
 
   void on_section_or_number(std::string_view key, TesterUnits& value, const char*);
   void list(std::string_view key, std::vector<ResourceOverride>& value, const char*);
+  template <class E>
+  void choices(std::string_view key, std::vector<E>& value, const char*) {
+    const Visit visit(*this, key);
+    if (!visit.node) return;
+    if (visit.node->kind != Node::Kind::kSeq) return wrong(*visit.node, "a list");
+    value.clear();
+    for (const Node& item : visit.node->items)
+      if (const auto chosen = choose(item, names<E>())) value.push_back(kEnumNames<E>[*chosen].value);
+  }
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*);
   void workload(std::string_view key, WorkloadConfig& value, const char*);
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*);

@@ -99,6 +99,12 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     item["required"] = {"resource"};
     put(key, {{"type", "array"}, {"items", std::move(item)}, {"default", Json::array()}}, "", meaning);
   }
+  template <class E>
+  void choices(std::string_view key, std::vector<E>& value, const char* meaning) {
+    Json standard = Json::array();
+    for (const E item : value) standard.push_back(enum_name(item));
+    put(key, {{"type", "array"}, {"items", {{"enum", names<E>()}}}, {"default", std::move(standard)}}, "", meaning);
+  }
   void effects(std::string_view key, ShadingConfig::Effects&, const char* meaning) {
     put(key,
         {{"anyOf", {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"enum", kEffectNames}}}}}},

@@ -76,6 +76,12 @@ class JsonWriter : public RowVisitor<JsonWriter> {
     for (const T& item : value) items.push_back(object(item));
     put(key, std::move(items));
   }
+  template <class E>
+  void choices(std::string_view key, std::vector<E>& value, const char*) {
+    Json items = Json::array();
+    for (const E item : value) items.push_back(enum_name(item));
+    put(key, std::move(items));
+  }
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*) {
     using Choice = ShadingConfig::Effects::Choice;
     put(key, value.choice == Choice::kList ? Json(value.names) : Json(value.choice == Choice::kAuto ? "auto" : "all"));

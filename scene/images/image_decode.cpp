@@ -5,7 +5,10 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/module/module.h"
+#include "scene/images/foreign_picture.h"
 #include "scene/images/jpeg_decode.h"
+#include "scene/images/picture_format.h"
 #include "scene/images/png_check.h"
 #include "scene/images/png_decode.h"
 #include "scene/images/webp_decode.h"
@@ -31,19 +34,40 @@ Format format_of(std::span<const unsigned char> bytes) {
   return Format::kNone;
 }
 
+/// Calls `take`, and adds the size of the picture to its refusal.
+template <class Take>
+void of_size(std::uint32_t width, std::uint32_t height, const Take& take) {
+  try {
+    take();
+  } catch (const std::length_error& error) {
+    throw std::length_error("of " + std::to_string(width) + " x " + std::to_string(height) + " pixels " + error.what());
+  }
+}
+
+Image decode_foreign(std::span<const unsigned char> encoded, MemoryBudget& memory, const PictureHint& hint) {
+  const PictureFormat format = picture_format(encoded, hint.name);
+  if (format.name.empty()) throw std::runtime_error("neither PNG nor JPEG nor WebP");
+  try {
+    return decode_foreign_picture(encoded, format, hint, memory);
+  } catch (const ModuleError& error) {
+    throw std::runtime_error(std::string(format.in_text) + ", neither PNG nor JPEG nor WebP, and " + error.what());
+  }
+}
+
 }  // namespace
 
-Image decode_image(std::span<const unsigned char> encoded, MemoryBudget& memory) {
+void throw_if_too_large(std::uint32_t width, std::uint32_t height, std::uint64_t bytes, MemoryBudget& memory) {
+  of_size(width, height, [&] { const MemoryBudget::Loan all = memory.lend(bytes); });
+}
+
+Image decode_image(std::span<const unsigned char> encoded, MemoryBudget& memory, const PictureHint& hint) {
   MemoryBudget::Loan work;
   const auto checked = [&](const auto& header) {
     const std::uint64_t pixels = std::uint64_t{header.width} * header.height;
-    try {
+    of_size(header.width, header.height, [&] {
       work = memory.lend(pixels * kWorkPerPixel);
       memory.take(pixels * kBytesPerPixel);
-    } catch (const std::length_error& error) {
-      throw std::length_error("of " + std::to_string(header.width) + " x " + std::to_string(header.height) +
-                              " pixels " + error.what());
-    }
+    });
     return header;
   };
   switch (format_of(encoded)) {
@@ -58,7 +82,7 @@ Image decode_image(std::span<const unsigned char> encoded, MemoryBudget& memory)
     case Format::kNone:
       break;
   }
-  throw std::runtime_error("neither PNG nor JPEG nor WebP");
+  return decode_foreign(encoded, memory, hint);
 }
 
 }  // namespace carousel::scene

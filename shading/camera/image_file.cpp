@@ -14,8 +14,10 @@
 #include <fmt/format.h>
 #include <png.h>
 
+#include "core/module/module.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
+#include "scene/images/picture_module.h"
 #include "shading/camera/tone_curve.h"
 #include "shading/math/srgb.h"
 
@@ -46,10 +48,7 @@ class MemoryStream : public Imf::OStream {
   std::size_t at_ = 0;
 };
 
-}  // namespace
-
-void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::span<const float> rgb,
-               float exposure) {
+std::vector<std::uint8_t> display_pixels(std::span<const float> rgb, float exposure) {
   const float factor = std::exp2(exposure);
   std::vector<std::uint8_t> pixels(rgb.size());
   for (std::size_t i = 0; i < rgb.size(); i += 3) {
@@ -58,6 +57,18 @@ void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint
       pixels[i + c] = static_cast<std::uint8_t>(linear_to_srgb(color[static_cast<int>(c)]) * 255.0f + 0.5f);
     }
   }
+  return pixels;
+}
+
+bool needs_module(PictureFile format) {
+  return format != PictureFile::kPng && format != PictureFile::kExr;
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::span<const float> rgb,
+               float exposure) {
+  const std::vector<std::uint8_t> pixels = display_pixels(rgb, exposure);
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = width;
@@ -92,6 +103,36 @@ void write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint
     fail(path, e.what());
   }
   write_file(path, memory.bytes());
+}
+
+void write_picture(const std::filesystem::path& path, PictureFile format, std::uint32_t width, std::uint32_t height,
+                   std::span<const float> rgb, float exposure) {
+  if (format == PictureFile::kPng) return write_png(path, width, height, rgb, exposure);
+  if (format == PictureFile::kExr) return write_exr(path, width, height, rgb);
+  std::string bytes;
+  try {
+    bytes = open_module<scene::PictureModule>().write(std::string(enum_name(format)), width, height, rgb,
+                                                      display_pixels(rgb, exposure));
+  } catch (const std::exception& e) {
+    fail(path, e.what());
+  }
+  write_file(path, bytes);
+}
+
+void require_picture_files(const std::vector<PictureFile>& formats) {
+  for (const PictureFile format : formats) {
+    if (!needs_module(format)) continue;
+    const std::string name(enum_name(format));
+    try {
+      if (open_module<scene::PictureModule>().writes(name)) continue;
+    } catch (const ModuleError& e) {
+      throw ConfigError("image.files", fmt::format("{}; expected png or exr, found {}", e.what(), name));
+    }
+    throw ConfigError("image.files",
+                      fmt::format("the OpenImageIO of the module pictures was built without this format; "
+                                  "expected another one, found {}",
+                                  name));
+  }
 }
 
 }  // namespace carousel::shading

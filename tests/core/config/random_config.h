@@ -89,6 +89,11 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
     value.resize(pick(3));
     for (T& item : value) fill(item);
   }
+  template <class E>
+  void choices(std::string_view, std::vector<E>& value, const char*) {
+    value.resize(pick(3));
+    for (E& item : value) choice("", item, "");
+  }
   void effects(std::string_view, ShadingConfig::Effects& value, const char*) {
     using Choice = ShadingConfig::Effects::Choice;
     value.choice = std::array{Choice::kAuto, Choice::kAll, Choice::kList}[pick(3)];
