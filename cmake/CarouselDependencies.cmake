@@ -1,5 +1,5 @@
 # Every library here is a Debian 12 package installed by script/bootstrap; README.md says what each is for. The installed
-# CMake package finds them with this file as well.
+# CMake package finds them with this file as well. Those of modules, which may be missing, are in CarouselModules.cmake.
 find_package(PkgConfig REQUIRED)
 find_package(TBB REQUIRED)
 find_package(glm REQUIRED)
@@ -18,8 +18,4 @@ find_package(Boost REQUIRED)   # headers only
 pkg_check_modules(turbojpeg REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(webp REQUIRED IMPORTED_TARGET libwebp)
 pkg_check_modules(hwy REQUIRED IMPORTED_TARGET libhwy)
-if(CAROUSEL_MPI)
-  set(MPI_CXX_SKIP_MPICXX ON)   # the bindings for C; those for C++ are gone from MPI 3
-  find_package(MPI REQUIRED COMPONENTS CXX)
-endif()
 find_package(Protobuf QUIET)   # for timelines in Perfetto's format; without it they are JSON

@@ -46,3 +46,12 @@ if(OpenImageIO_FOUND)
 else()
   message(STATUS "No module pictures: libopenimageio-dev is missing; PNG, JPEG, WebP and EXR need none")
 endif()
+
+# -- mpi: Open MPI
+set(MPI_CXX_SKIP_MPICXX ON)   # the bindings for C; those for C++ are gone from MPI 3
+find_package(MPI QUIET COMPONENTS CXX)
+if(MPI_CXX_FOUND)
+  carousel_module(mpi SOURCES modules/mpi/mpi_module.cpp modules/mpi/call_guard.cpp LIBRARIES MPI::MPI_CXX ${CMAKE_DL_LIBS})
+else()
+  message(STATUS "No module mpi: libopenmpi-dev is missing; engine.transport: mpi needs it")
+endif()

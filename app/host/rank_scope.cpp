@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "core/config/write.h"
+#include "core/module/module.h"
 #include "core/system/error.h"
 
 namespace carousel::app {
@@ -21,6 +22,14 @@ namespace {
 bool started_as_rank() {
   const char* const names[] = {"OMPI_COMM_WORLD_RANK", "PMIX_RANK", "PMI_RANK"};
   return std::any_of(std::begin(names), std::end(names), [](const char* name) { return std::getenv(name) != nullptr; });
+}
+
+const ringbus::MpiModule& mpi_module() {
+  try {
+    return open_module<ringbus::MpiModule>();
+  } catch (const ModuleError& error) {
+    throw ConfigError("engine.transport", fmt::format("{}; expected local, found mpi", error.what()));
+  }
 }
 
 /// The first line in which two texts differ, of both.
@@ -38,14 +47,12 @@ std::string difference(const std::string& ours, const std::string& theirs) {
 }  // namespace
 
 RankScope::RankScope(const Config& config, const std::string& program) {
-  if (!ringbus::MpiTransport::built())
-    throw ConfigError("engine.transport",
-                      "this program was built without MPI (cmake -DCAROUSEL_MPI=ON); expected local, found mpi");
+  const ringbus::MpiModule& module = mpi_module();
   if (!started_as_rank())
     throw ConfigError(
         "engine.transport",
         "mpirun has not started this program, as in mpirun -n 2 carousel run ...; expected local, found mpi");
-  transport_ = ringbus::MpiTransport::start([](const std::string& text) { spdlog::error("{}", text); });
+  transport_ = module.start([](const std::string& text) { spdlog::error("{}", text); });
   for (const auto& sink : spdlog::default_logger()->sinks())
     sink->set_pattern(fmt::format("rank {}: %^%l%$: %v", rank()));
   require_same("program", program);

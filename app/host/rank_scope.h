@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/config/load/load.h"
-#include "ringbus/transport/mpi/mpi_transport.h"
+#include "ringbus/transport/mpi_transport.h"
 
 namespace carousel::app {
 

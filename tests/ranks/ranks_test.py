@@ -1,7 +1,7 @@
 """The native engine over ranks of MPI: hits and picture are those of one process, whatever the ranks and threads; what
 ranks cannot do is refused by name; a rank that dies or hangs ends the run, without files.
 
-CAROUSEL names the program. Where it was built without MPI, the suite checks that it says so, and skips the rest."""
+CAROUSEL names the program. Where it has no module mpi, the suite checks that it says so, and skips the rest."""
 
 import array
 import functools
@@ -55,8 +55,8 @@ class Ranks(unittest.TestCase):
         refusal = self.alone(["engine.transport=mpi"])
         self.assertEqual(refusal.returncode, 2)
         self.assertIn("engine.transport", refusal.stderr)
-        if "built without MPI" in refusal.stderr:
-            self.skipTest("the program was built without MPI")
+        if "the module mpi is not there" in refusal.stderr:
+            self.skipTest("the program has no module mpi")
         if not starts_processes():
             self.skipTest("mpirun cannot start two processes of any program here")
 
@@ -263,14 +263,23 @@ class Refusals(Ranks):
         commit = commit[0].encode()
         # The compiler may have made two words of it, in instructions, that overlap.
         pieces = re.compile(re.escape(commit) + b"|" + re.escape(commit[:4]) + b"(?=.{0,16}" + re.escape(commit[3:7]) + b")", re.S)
-        content, places = pieces.subn(lambda at: b"zzzz" + at[0][4:], pathlib.Path(CAROUSEL).read_bytes())
-        if places == 0:
-            self.skipTest("the commit cannot be found in the program")
-        other = self.folder / "carousel"
-        other.write_bytes(content)
-        other.chmod(0o755)
+        # A program takes modules of its own build only, so that the other one has one too, as where it is installed.
+        other, module = self.folder / "bin" / "carousel", self.folder / "lib" / "carousel" / "modules" / "mpi.so"
+        for target, source in (other, pathlib.Path(CAROUSEL)), (module, pathlib.Path(CAROUSEL).parent / "modules" / "mpi.so"):
+            content, places = pieces.subn(lambda at: b"zzzz" + at[0][4:], source.read_bytes())
+            if places == 0:
+                self.skipTest(f"the commit cannot be found in {source}")
+            target.parent.mkdir(parents=True)
+            target.write_bytes(content)
+            target.chmod(0o755)
         command = self.command("ranks", ["engine.transport=mpi"])
         self.refused(self.side_by_side(command, command, [str(other), *command[1:]]), "rank 2 has another program")
+
+    def test_a_program_without_the_module(self):
+        run = subprocess.run(self.command("ranks", ["engine.transport=mpi"]), capture_output=True, text=True, timeout=60,
+                             env=dict(ENVIRONMENT, CAROUSEL_MODULES=str(self.folder)))
+        self.refused(run, "engine.transport: the module mpi is not there", "carousel-mpi", "libopenmpi-dev",
+                     "expected local, found mpi")
 
     def test_files_that_a_rank_does_not_have(self):
         """Two hosts, played by two folders with the same configuration."""

@@ -1,4 +1,4 @@
-#include "ringbus/transport/mpi/call_guard.h"
+#include "modules/mpi/call_guard.h"
 
 #include <algorithm>
 #include <chrono>

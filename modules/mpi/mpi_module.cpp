@@ -1,18 +1,17 @@
-#include "ringbus/transport/mpi/mpi_transport.h"
-
-#ifdef CAROUSEL_MPI
-
 #include <algorithm>
 #include <cstdlib>
 #include <mutex>
 #include <thread>
 #include <utility>
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 
+#include "core/module/module.h"
 #include "core/system/error.h"
-#include "ringbus/transport/mpi/call_guard.h"
-#include "ringbus/transport/mpi/mailbox.h"
+#include "modules/mpi/call_guard.h"
+#include "modules/mpi/mailbox.h"
+#include "ringbus/transport/mpi_transport.h"
 
 namespace carousel::ringbus {
 
@@ -238,9 +237,17 @@ class OpenMpi final : public MpiTransport {
   std::jthread watch_;  // ends before the others
 };
 
-}  // namespace
+/// Open MPI loads components of its own, which look for its names among all that the process has (RTLD_GLOBAL), where a
+/// library that a module brings does not stand: Open MPI's FAQ, "Can I dlopen() libmpi". This moves it there.
+void show_names() {
+  Dl_info found{};
+  if (dladdr(reinterpret_cast<void*>(&MPI_Init_thread), &found) == 0 ||
+      dlopen(found.dli_fname, RTLD_NOW | RTLD_GLOBAL | RTLD_NOLOAD) == nullptr)
+    throw FileError("the library of MPI cannot be shown to its components");
+}
 
-std::unique_ptr<MpiTransport> MpiTransport::start(const Say& say) {
+std::unique_ptr<MpiTransport> start(const MpiTransport::Say& say) {
+  show_names();
   // One thread of a run sends and receives, another one before and after it, and one gives signs of life.
   int level = MPI_THREAD_SINGLE;
   {
@@ -254,24 +261,25 @@ std::unique_ptr<MpiTransport> MpiTransport::start(const Say& say) {
   return std::make_unique<OpenMpi>(rank, ranks, say);
 }
 
-bool MpiTransport::built() {
-  return true;
+/// "Open MPI v4.1.4"
+std::string library() {
+  char text[MPI_MAX_LIBRARY_VERSION_STRING];
+  int size = 0;
+  MPI_Get_library_version(text, &size);
+  const std::string all(text, static_cast<std::size_t>(size));
+  return all.substr(0, all.find(','));
 }
 
+}  // namespace
 }  // namespace carousel::ringbus
 
-#else
-
-namespace carousel::ringbus {
-
-std::unique_ptr<MpiTransport> MpiTransport::start(const Say&) {
-  return nullptr;
+const carousel::ModuleInfo* carousel_module() {
+  using namespace carousel;
+  static const ringbus::MpiModule functions{ringbus::start};
+  static const ModuleInfo info{.build = module_build(),
+                               .name = ringbus::MpiModule::kModule,
+                               .brings = "runs over several processes and hosts (engine.transport: mpi)",
+                               .library = ringbus::library,
+                               .functions = &functions};
+  return &info;
 }
-
-bool MpiTransport::built() {
-  return false;
-}
-
-}  // namespace carousel::ringbus
-
-#endif

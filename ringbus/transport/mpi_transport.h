@@ -26,17 +26,20 @@ class MpiTransport : public Transport {
   /// Tells the user of a rank that is missing, on every rank before any of them ends: mpirun ends the others with the
   /// first. Any thread calls it.
   using Say = std::function<void(const std::string&)>;
-  /// Joins the ranks that mpirun has started; without mpirun the process is the only rank. Null where the program was
-  /// built without MPI (CAROUSEL_MPI). Throws a FileError where MPI lacks a thread level that it needs.
-  static std::unique_ptr<MpiTransport> start(const Say& say);
-  /// True if the program was built with MPI, so that start() can make ranks.
-  static bool built();
-
   /// Leaves the ranks: waits for all of them to leave. Throws a SimulationError where one is missing.
   virtual void leave() = 0;
   /// Leaves the ranks as leave() does, but gives up where others do not leave in time, or are missing. When this
   /// process ends then, mpirun ends the others.
   virtual void leave_within(std::chrono::milliseconds time) = 0;
+};
+
+/// The interface of the module that makes them (core/module/module.h).
+struct MpiModule {
+  static constexpr const char* kModule = "mpi";
+
+  /// Joins the ranks that mpirun has started; without mpirun the process is the only rank. Throws a FileError where MPI
+  /// lacks a thread level that it needs.
+  std::unique_ptr<MpiTransport> (*start)(const MpiTransport::Say& say) = nullptr;
 };
 
 }  // namespace carousel::ringbus

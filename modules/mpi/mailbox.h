@@ -1,7 +1,5 @@
 #pragma once
 
-#ifdef CAROUSEL_MPI
-
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -114,5 +112,3 @@ class Mailbox {
 };
 
 }  // namespace carousel::ringbus
-
-#endif
