@@ -1,5 +1,6 @@
-# cmake --install and cpack. Two components: `carousel`, the program with all that a user of it needs, and
-# `carousel-dev`, headers, libraries and the CMake package for programs of one's own.
+# cmake --install and cpack. Components: `carousel`, the program with all that a user of it needs; `carousel-dev`,
+# headers, libraries and the CMake package for programs of one's own; and one for each module, as the libraries of
+# others that it needs are many.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 find_package(Python3 QUIET COMPONENTS Interpreter)
@@ -11,6 +12,9 @@ set(docs ${CMAKE_INSTALL_DATADIR}/doc/carousel)
 
 # -- The program
 install(TARGETS carousel RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} ${program})
+# Modules are files of this program alone, found beside it (core/module/module.cpp): no folder of an architecture.
+set(modules lib/carousel/modules)
+install(TARGETS carousel_module_process RUNTIME DESTINATION ${modules} ${program})
 
 # The program writes its manual, its completions and the schema of configurations. It is asked when it is installed:
 # asked when it is built, it would take a second of every build.
@@ -29,7 +33,7 @@ install(CODE "
   execute_process(COMMAND gzip -9nc \"${CMAKE_CURRENT_SOURCE_DIR}/CHANGELOG.md\" OUTPUT_FILE \"${written}/changelog.gz\"
                   COMMAND_ERROR_IS_FATAL ANY)
   execute_process(COMMAND \"${CMAKE_COMMAND}\" -DSOURCE=${CMAKE_CURRENT_SOURCE_DIR} -DPROGRAM=\${carousel_program} -DOUT=${written}
-                          -DVERSION=${PROJECT_VERSION} -DCOMMIT=${CAROUSEL_COMMIT} -DPAGES=${CAROUSEL_PAGES_HAVE_CHARTS}
+                          -DMODULES=${CAROUSEL_MODULE_FOLDER} -DVERSION=${PROJECT_VERSION} -DCOMMIT=${CAROUSEL_COMMIT} -DPAGES=${CAROUSEL_PAGES_HAVE_CHARTS}
                           -P \"${CMAKE_CURRENT_SOURCE_DIR}/cmake/notices.cmake\" COMMAND_ERROR_IS_FATAL ANY)
   # Debian's zsh and Python look elsewhere below /usr than below /usr/local.
   if(CMAKE_INSTALL_PREFIX STREQUAL \"/usr\")
@@ -49,6 +53,16 @@ install(FILES ${written}/changelog.gz README.md DESTINATION ${docs} ${program})
 install(FILES cmake/copyright ${written}/NOTICES.gz ${written}/carousel.spdx.json DESTINATION ${docs} ${program})
 install(DIRECTORY docs/ DESTINATION ${docs} ${program})
 install(DIRECTORY python/examples/ DESTINATION ${docs}/examples/python ${program} PATTERN .ipynb_checkpoints EXCLUDE)
+
+# -- Modules: each where its library was found
+foreach(module IN ITEMS pictures mpi scenes)
+  if(TARGET carousel_module_${module})
+    list(APPEND module_components carousel-${module})
+    install(TARGETS carousel_module_${module} LIBRARY DESTINATION ${modules} COMPONENT carousel-${module})
+    install(FILES cmake/copyright ${written}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/carousel-${module}
+            COMPONENT carousel-${module})
+  endif()
+endforeach()
 
 # -- Programs of one's own
 set(libraries core scene accel ringbus shading report app)
@@ -82,7 +96,7 @@ set(CPACK_PACKAGE_CONTACT "The Carousel project <carousel@carousel.invalid>")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "simulator of ray-tracing hardware in which shapes travel")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL carousel carousel-dev)
+set(CPACK_COMPONENTS_ALL carousel carousel-dev ${module_components})
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
@@ -90,14 +104,36 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_CAROUSEL_PACKAGE_NAME carousel)
 set(CPACK_DEBIAN_CAROUSEL_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_CAROUSEL_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_CAROUSEL_PACKAGE_RECOMMENDS "python3")
-set(CPACK_DEBIAN_CAROUSEL_PACKAGE_SUGGESTS "carousel-dev, python3-numpy, python3-pandas")
+list(JOIN module_components ", " recommended)
+string(REGEX REPLACE "(, )?carousel-mpi" "" recommended "${recommended}")   # is for those who have several hosts
+string(REGEX REPLACE "^, |, $" "" recommended "python3, ${recommended}")
+set(CPACK_DEBIAN_CAROUSEL_PACKAGE_RECOMMENDS "${recommended}")
+set(CPACK_DEBIAN_CAROUSEL_PACKAGE_SUGGESTS "carousel-dev, carousel-mpi, python3-numpy, python3-pandas")
 set(CPACK_COMPONENT_CAROUSEL_DESCRIPTION
     "Carousel simulates ray-tracing hardware in which rays stay put and packets
 of shapes travel a ring of queues: on worker threads and real queues, or
 under virtual time with a report of cycles, bytes and the parts that limit
 the machine. The package holds the program, its manual, example
 configurations and a Python module.")
+set(CPACK_COMPONENT_CAROUSEL-PICTURES_DESCRIPTION
+    "Textures and pictures in TIFF, DDS, TGA, Radiance HDR, PSD, JPEG 2000 and the
+other formats of OpenImageIO for Carousel, a simulator of ray-tracing
+hardware, which reads PNG, JPEG and WebP without it.")
+set(CPACK_COMPONENT_CAROUSEL-MPI_DESCRIPTION
+    "Runs of Carousel, a simulator of ray-tracing hardware, over several processes
+and hosts by Open MPI (engine.transport: mpi).")
+set(CPACK_COMPONENT_CAROUSEL-SCENES_DESCRIPTION
+    "Scenes of other formats than glTF for Carousel, a simulator of ray-tracing
+hardware, by Open Asset Import Library.")
+set(CPACK_DEBIAN_CAROUSEL-MPI_PACKAGE_RECOMMENDS "openmpi-bin")
+foreach(component IN LISTS module_components)
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${component})
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION science)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SHLIBDEPS ON)
+  # A module is of one build with its program (core/module/module.h).
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "carousel (= ${PROJECT_VERSION})")
+endforeach()
 # The libraries are those that script/bootstrap installs to build with: one list.
 file(STRINGS script/bootstrap bootstrap REGEX "^release=|^  lib|^  .*-dev")
 list(JOIN bootstrap " " bootstrap)

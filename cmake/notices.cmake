@@ -5,14 +5,14 @@
 #                       the scripts in its pages, as npm has them
 #   carousel.spdx.json  the same libraries and the shared ones with their versions, as a bill of materials (SPDX 2.3)
 #
-#   cmake -DSOURCE=... -DPROGRAM=... -DOUT=... -DVERSION=... -DCOMMIT=... -DPAGES=ON|OFF -P notices.cmake
+#   cmake -DSOURCE=... -DPROGRAM=... -DMODULES=FOLDER -DOUT=... -DVERSION=... -DCOMMIT=... -DPAGES=ON|OFF -P notices.cmake
 #
 # Where dpkg is missing, both name no Debian packages, and the notices say so.
 cmake_minimum_required(VERSION 3.25)
 
-# The libraries are those that script/bootstrap installs to build with: one list.
+# The libraries are those that script/bootstrap installs to build with: two lists.
 file(STRINGS ${SOURCE}/script/bootstrap lines)
-string(REGEX MATCH "release=\\(([^)]*)\\)" lines "${lines}")
+string(REGEX MATCHALL "(release|modules)=\\(([^)]*)\\)" lines "${lines}")
 string(REGEX MATCHALL "[a-z0-9.+-]+-dev" headers "${lines}")
 find_program(DPKG_QUERY dpkg-query)
 
@@ -61,9 +61,12 @@ if(DPKG_QUERY)
     string(APPEND notices "\n======== ${package} ${version} ========\n\n${text}")
   endforeach()
 
-  # Shared libraries that the program loads: their packages.
-  execute_process(COMMAND ldd ${PROGRAM} OUTPUT_VARIABLE loaded)
-  string(REGEX MATCHALL "/[^ \n]+\\.so[^ \n]*" loaded "${loaded}")
+  # Shared libraries that the program and its modules load: their packages.
+  file(GLOB modules ${MODULES}/*.so)
+  execute_process(COMMAND ldd ${PROGRAM} ${modules} OUTPUT_VARIABLE loaded)
+  string(REGEX MATCHALL "=> /[^ \n]+\\.so[^ \n]*" loaded "${loaded}")
+  list(TRANSFORM loaded REPLACE "^=> " "")
+  list(REMOVE_DUPLICATES loaded)
   # Where /lib is a link to /usr/lib, packages list one name and the loader another. A pattern in their place takes seconds.
   set(named ${loaded})
   list(TRANSFORM named PREPEND /usr)

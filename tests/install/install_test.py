@@ -50,8 +50,9 @@ class Install(unittest.TestCase):
 
     def test_notices_hold_every_library_that_is_compiled_in(self):
         notices = gzip.decompress(self.one("share/doc/carousel/NOTICES.gz").read_bytes()).decode()
-        wanted = re.search(r"release=\(([^)]*)\)", (SOURCE / "script/bootstrap").read_text())[1]
-        wanted = [name for name in wanted.split() if name.endswith("-dev")]
+        wanted = re.findall(r"^(?:release|modules)=\(([^)]*)\)", (SOURCE / "script/bootstrap").read_text(), re.M)
+        self.assertEqual(len(wanted), 2)
+        wanted = [name for name in " ".join(wanted).split() if name.endswith("-dev")]
         self.assertGreater(len(wanted), 15)
         for name in wanted:
             self.assertIn(f"======== {name} ", notices)
@@ -66,13 +67,19 @@ class Install(unittest.TestCase):
         self.assertEqual(len(identities), len(bill["packages"]))
         for relation in bill["relationships"]:
             self.assertIn(relation["relatedSpdxElement"], identities)
-        loaded = re.findall(r"=> (/\S+)", run("ldd", self.program))
+        modules = sorted(self.prefix.glob("lib/carousel/modules/*.so"))
+        self.assertGreater(len(modules), 1)
+        loaded = set(re.findall(r"=> (/\S+)", run("ldd", self.program, *modules)))
         self.assertGreater(len(loaded), 15)
+        # Where /lib is a link to /usr/lib, packages may list either name.
+        names = [name for library in loaded for name in (library, "/usr" + library)]
+        found = subprocess.run(["dpkg-query", "-S", *names], capture_output=True, text=True, check=False).stdout
+        owners = dict(reversed(line.split(": ", 1)) for line in found.splitlines())
+        installed = dict(line.split(" ") for line in
+                         run("dpkg-query", "-W", "-f", "${Package} ${Version}\n").splitlines())
         for library in loaded:
-            # Where /lib is a link to /usr/lib, packages may list either name.
-            owner = subprocess.run(["dpkg-query", "-S", library, "/usr" + library], capture_output=True, text=True,
-                                   check=False).stdout.split(":")[0]
-            self.assertEqual(versions[owner], run("dpkg-query", "-W", "-f", "${Version}", owner))
+            owner = (owners.get(library) or owners["/usr" + library]).split(":")[0]
+            self.assertEqual(versions[owner], installed[owner], library)
         for name in ("libglm-dev", "nlohmann-json3-dev", "echarts"):
             self.assertIn(name, versions)
 
@@ -82,6 +89,19 @@ class Install(unittest.TestCase):
         self.assertEqual(re.search("^## (.*)", (SOURCE / "CHANGELOG.md").read_text(), re.M)[1], version)
         self.assertIn(f'PACKAGE_VERSION "{version}"', self.one("lib/**/CarouselConfigVersion.cmake").read_text())
         self.assertIn(f"Carousel {version}", gzip.decompress(self.one("share/man/man1/carousel.1.gz").read_bytes()).decode())
+
+    def test_modules_are_opened_from_the_folder_beside_the_program(self):
+        text = run(self.program, "--version", "--verbose")
+        self.assertIn(f"modules in {self.prefix}/lib/carousel/modules", text)
+        self.assertIn("OpenImageIO ", text)
+        self.assertNotIn("refused", text)
+        for module in self.prefix.glob("lib/carousel/modules/*.so"):
+            # They come with the system: no path of the build stays in them.
+            self.assertNotIn("RUNPATH", run("readelf", "-d", module))
+        out = Path(self.folder.name) / "tiff"
+        run(self.program, "run", self.prefix / "share/carousel/configs/demo.yaml", "--quiet", "--out", out, "--set",
+            "image.width=8", "--set", "image.height=8", "--set", "image.samples=1", "--set", "image.files=[tiff]")
+        self.assertTrue((out / "image.tiff").exists())
 
     def test_nothing_names_the_sources(self):
         for file in self.prefix.glob("lib/**/*.cmake"):
