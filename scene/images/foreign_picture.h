@@ -12,8 +12,8 @@ namespace carousel::scene {
 
 /// Reads a picture by the module pictures, in a process that starts with the first one and ends with the program. The
 /// pixels are as decode_image() has them; floats are clamped to 0 and 1 and rounded to 8 bits, after linear light has
-/// become sRGB where the picture is used as colours. Any thread; one after another is served. Throws as decode_image() does, ModuleError
-/// where the module is missing, and Interrupted.
+/// become sRGB where the picture is used as colours. Any thread; one picture after another is read. Throws as
+/// decode_image() does, ModuleError where the module is missing, and Interrupted.
 Image decode_foreign_picture(std::span<const unsigned char> encoded, const PictureFormat& format,
                              const PictureHint& hint, MemoryBudget& memory);
 
