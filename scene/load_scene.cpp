@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <numbers>
+#include <optional>
 #include <string>
 
 #include "core/system/error.h"
@@ -30,6 +31,22 @@ std::filesystem::path find_file(const std::string& name, const std::filesystem::
                      (config_dir.empty() ? "." : config_dir.string()) + "' and in the working directory"}});
 }
 
+/// The moment that the configuration names.
+std::optional<PoseChoice> pose_of(const SceneConfig& config) {
+  if (config.animation) return PoseChoice{config.animation->time, config.animation->name};
+  if (config.time) return PoseChoice{*config.time, std::nullopt};
+  return std::nullopt;
+}
+
+Scene load_file(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
+                const ImageChoice& images, Executor* executor) {
+  const std::optional<PoseChoice> pose = pose_of(config);
+  Scene scene = load_gltf(find_file(config.file, config_dir), warn, images, pose, executor);
+  if (pose && !scene.motion.any() && warn)
+    warn(config.file + ": has no animations, skins or morph targets; scene.time changes nothing");
+  return scene;
+}
+
 /// Gives the scene's camera the view of the configuration.
 void set_up(Camera& camera, const CameraConfig& config) {
   constexpr float kRadians = std::numbers::pi_v<float> / 180;
@@ -55,8 +72,7 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
   if (config.file.empty() == !config.builtin.has_value()) {
     throw ConfigError("scene", "expected exactly one of file and builtin");
   }
-  Scene scene =
-      config.builtin ? make_builtin(config) : load_gltf(find_file(config.file, config_dir), warn, images, executor);
+  Scene scene = config.builtin ? make_builtin(config) : load_file(config, config_dir, warn, images, executor);
   if (config.sky || !config.builtin) {
     const SkyConfig sky = config.sky.value_or(SkyConfig{});
     scene.sky.radiance = sky.color * sky.strength;

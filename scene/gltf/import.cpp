@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "core/system/error.h"
@@ -25,18 +26,20 @@
 #include "scene/gltf/materials/materials.h"
 #include "scene/gltf/meshes.h"
 #include "scene/gltf/nodes.h"
+#include "scene/gltf/pose/animation.h"
+#include "scene/gltf/pose/joints.h"
 #include "scene/model/fitted_camera.h"
 
 namespace carousel::scene {
 
 namespace {
 
-/// Reads the meshes that instances name (by the file's indices, then those of `spheres`) and renumbers them for the
+/// Reads the meshes that instances name (by the file's indices, then those of `made`) and renumbers them for the
 /// scene, in the file's order.
-void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& model, std::vector<Mesh> spheres,
-                      Scene& scene) {
+void read_used_meshes(MeshReader& reader, DracoReader& draco, JointTable& joints, tinygltf::Model& model,
+                      std::vector<NodeMesh> made, Scene& scene) {
   const std::size_t file_meshes = model.meshes.size();
-  std::vector<std::optional<MeshId>> ids(file_meshes + spheres.size());
+  std::vector<std::optional<MeshId>> ids(file_meshes + made.size());
   for (const Instance& instance : scene.instances) ids[instance.mesh.value] = MeshId(0);
   for (std::size_t i = 0; i < ids.size(); ++i) {
     if (!ids[i]) continue;
@@ -44,8 +47,16 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& m
     if (i < file_meshes) {
       draco.decode(i, model.meshes[i]);
       scene.meshes.push_back(reader.read(i));
+    } else if (const auto* bent = std::get_if<BentMesh>(&made[i - file_meshes])) {
+      draco.decode(bent->mesh, model.meshes[bent->mesh]);
+      Bend bend{.weights = bent->weights};
+      if (bent->skin) {
+        bend.joints = &joints.of(*bent->skin);
+        bend.skin = *bent->skin;
+      }
+      scene.meshes.push_back(reader.read(bent->mesh, &bend));
     } else {
-      scene.meshes.push_back(std::move(spheres[i - file_meshes]));
+      scene.meshes.push_back(std::move(std::get<Mesh>(made[i - file_meshes])));
     }
   }
   for (Instance& instance : scene.instances) instance.mesh = *ids[instance.mesh.value];
@@ -55,8 +66,11 @@ void read_used_meshes(MeshReader& reader, DracoReader& draco, tinygltf::Model& m
 }
 
 Scene import(std::span<const std::byte> bytes, const std::string& file, std::optional<std::filesystem::path> folder,
-             const WarningSink& warn, const ImageChoice& choice, Executor* executor, MemoryBudget& memory) {
+             const WarningSink& warn, const ImageChoice& choice, const std::optional<PoseChoice>& pose,
+             Executor* executor, MemoryBudget& memory) {
   GltfDocument document = parse_document(bytes, file);
+  document.morph_targets = count_morph_targets(document.json);
+  if (pose) document.posing = {true, chosen_animations(document.json, *pose, file)};
   check_extensions(document, warn);
   check_schema(document, warn);
   check_links(document, warn);
@@ -70,10 +84,13 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
 
   const std::map<std::size_t, Bytes> unpacked = decode_meshopt_views(document, model, budget);
   AccessorTable accessors(document, model, unpacked, budget, warn);
-  std::vector<Mesh> spheres = read_nodes(document, model.model, accessors, budget, default_material, warn, scene);
+  scene.motion = motion_of(document, accessors);
+  if (pose) pose_nodes(document, accessors, budget, *pose, warn, model.model);
+  std::vector<NodeMesh> made = read_nodes(document, model.model, accessors, budget, default_material, warn, scene);
   MeshReader meshes(document, model.model, accessors, budget, default_material, warn);
   DracoReader draco(document, accessors, budget);
-  read_used_meshes(meshes, draco, model.model, std::move(spheres), scene);
+  JointTable joints(document, model.model, accessors, budget);
+  read_used_meshes(meshes, draco, joints, model.model, std::move(made), scene);
   if (meshes.skipped_primitives() > 0 && warn) {
     warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
          " primitives skipped: points, lines or without positions");
@@ -102,7 +119,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
 }  // namespace
 
 Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, const ImageChoice& images,
-                Executor* executor) {
+                const std::optional<PoseChoice>& pose, Executor* executor) {
   const std::string name = file.string();
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) throw SceneError(name, "", "no such file");
@@ -115,7 +132,7 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, cons
     std::vector<std::byte> bytes(static_cast<std::size_t>(size));
     stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     if (static_cast<std::uintmax_t>(stream.gcount()) != size) throw SceneError(name, "", "reading failed");
-    return import(bytes, name, file.parent_path(), warn, images, executor, memory);
+    return import(bytes, name, file.parent_path(), warn, images, pose, executor, memory);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   } catch (const std::length_error& too_much) {
@@ -124,18 +141,18 @@ Scene load_gltf(const std::filesystem::path& file, const WarningSink& warn, cons
 }
 
 Scene load_gltf_within(std::uint64_t budget_bytes, std::span<const std::byte> bytes, const std::string& name,
-                       const WarningSink& warn, const ImageChoice& images) {
+                       const WarningSink& warn, const ImageChoice& images, const std::optional<PoseChoice>& pose) {
   try {
     MemoryBudget memory(budget_bytes);
-    return import(bytes, name, std::nullopt, warn, images, nullptr, memory);
+    return import(bytes, name, std::nullopt, warn, images, pose, nullptr, memory);
   } catch (const std::bad_alloc&) {
     throw SceneError(name, "", "not enough memory to load it");
   }
 }
 
 Scene load_gltf_from_memory(std::span<const std::byte> bytes, const std::string& name, const WarningSink& warn,
-                            const ImageChoice& images) {
-  return load_gltf_within(MemoryBudget::of_process(), bytes, name, warn, images);
+                            const ImageChoice& images, const std::optional<PoseChoice>& pose) {
+  return load_gltf_within(MemoryBudget::of_process(), bytes, name, warn, images, pose);
 }
 
 }  // namespace carousel::scene

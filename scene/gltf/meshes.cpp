@@ -106,8 +106,24 @@ void append(std::vector<T>& to, const std::vector<T>& from, std::size_t before, 
 
 }  // namespace
 
+namespace {
+
+/// The accessors that a primitive's vertices come from.
+struct VertexKey {
+  std::map<std::string, int> attributes;
+  std::vector<std::map<std::string, int>> targets;  ///< empty without a pose
+  friend auto operator<=>(const VertexKey&, const VertexKey&) = default;
+};
+
+VertexKey key_of(const tinygltf::Primitive& primitive, const Bend* bend) {
+  return {primitive.attributes, bend != nullptr ? primitive.targets : std::vector<std::map<std::string, int>>{}};
+}
+
+}  // namespace
+
 struct MeshReader::Cache {
-  std::map<std::string, int> key;
+  VertexKey key;
+  bool bent = false;            ///< the vertices are those of one node
   std::array<bool, 2> reads{};  ///< the material's sets of texture coordinates
   Attributes attributes;
   MemoryBudget::Loan loan;  ///< for the attributes
@@ -125,17 +141,23 @@ MeshReader::MeshReader(const GltfDocument& document, const tinygltf::Model& mode
 
 MeshReader::~MeshReader() = default;
 
-const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive, const std::string& path) {
+const MeshReader::Attributes& MeshReader::attributes_of(const tinygltf::Primitive& primitive, const std::string& path,
+                                                        const Bend* bend) {
   const Json* material =
       primitive.material >= 0 ? &document_.json["materials"][static_cast<std::size_t>(primitive.material)] : nullptr;
   const std::array reads{material && reads_tex_coords(*material, 0), material && reads_tex_coords(*material, 1)};
-  if (cache_->key != primitive.attributes || cache_->reads != reads) {
-    cache_->key.clear();
+  const VertexKey key = key_of(primitive, bend);
+  if (cache_->key != key || cache_->reads != reads) {
+    cache_->key = {};
     cache_->attributes = {};
     cache_->loan = {};
     cache_->attributes = read_attributes(primitive, path, reads);
     cache_->loan = budget_.lend(cache_->attributes.bytes(), path, "the primitive");
-    cache_->key = primitive.attributes;
+    if (bend != nullptr) {
+      bend_vertices(document_, accessors_, budget_, primitive, path, *bend, cache_->attributes.positions,
+                    cache_->attributes.normals);
+    }
+    cache_->key = key;
     cache_->reads = reads;
   }
   return cache_->attributes;
@@ -235,7 +257,9 @@ std::vector<std::uint32_t> MeshReader::read_triangles(const tinygltf::Primitive&
   return as_triangle_list(primitive.mode, order);
 }
 
-Mesh MeshReader::read(std::size_t index) {
+Mesh MeshReader::read(std::size_t index, const Bend* bend) {
+  if (bend != nullptr || cache_->bent) cache_->key = {};
+  cache_->bent = bend != nullptr;
   const tinygltf::Mesh& source = model_.meshes[index];
   Mesh mesh;
   mesh.name = source.name;
@@ -245,7 +269,7 @@ Mesh MeshReader::read(std::size_t index) {
   const bool any_normals = std::ranges::any_of(
       source.primitives, [&](const tinygltf::Primitive& p) { return usable(p) && p.attributes.contains("NORMAL"); });
   std::uint64_t taken = 0;
-  std::map<std::map<std::string, int>, std::uint32_t> bases;  // first vertex of those taken as a whole
+  std::map<VertexKey, std::uint32_t> bases;  // first vertex of those taken as a whole
   for (std::size_t p = 0; p < source.primitives.size(); ++p) {
     const tinygltf::Primitive& primitive = source.primitives[p];
     const std::string path = json_path(json_path(json_path("/meshes", index), "primitives"), p);
@@ -253,7 +277,7 @@ Mesh MeshReader::read(std::size_t index) {
       ++skipped_;
       continue;
     }
-    const Attributes& whole = attributes_of(primitive, path);
+    const Attributes& whole = attributes_of(primitive, path, bend);
     std::vector<std::uint32_t> triangles = read_triangles(primitive, whole.positions.size(), path);
     const std::size_t before = mesh.positions.size();
     std::uint32_t base = static_cast<std::uint32_t>(before);
@@ -277,7 +301,7 @@ Mesh MeshReader::read(std::size_t index) {
         v = static_cast<std::uint32_t>(std::ranges::lower_bound(used, v) - used.begin());
       }
       add_vertices(mesh, picked(whole, used), taken, path);
-    } else if (const auto [entry, fresh] = bases.try_emplace(primitive.attributes, base); fresh) {
+    } else if (const auto [entry, fresh] = bases.try_emplace(key_of(primitive, bend), base); fresh) {
       add_vertices(mesh, whole, taken, path);
     } else {
       base = entry->second;

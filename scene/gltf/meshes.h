@@ -8,6 +8,7 @@
 
 #include "scene/gltf/buffers/accessor.h"
 #include "scene/gltf/document/document.h"
+#include "scene/gltf/pose/bend.h"
 #include "scene/model/scene.h"
 #include "scene/model/warnings.h"
 
@@ -24,8 +25,9 @@ class MeshReader {
   /// The triangles of all primitives in order; strips and fans become lists. Primitives with the same
   /// attributes share their vertices. Where only some primitives have normals, the others get flat ones.
   /// Points, lines and primitives without positions are skipped and counted. Texture coordinates that no texture reads
-  /// may be wrong: they are left out with a warning. Throws SceneError.
-  Mesh read(std::size_t mesh);
+  /// may be wrong: they are left out with a warning. With `bend` vertices are moved before flat normals are made.
+  /// Throws SceneError.
+  Mesh read(std::size_t mesh, const Bend* bend = nullptr);
 
   std::size_t skipped_primitives() const { return skipped_; }
 
@@ -35,7 +37,7 @@ class MeshReader {
 
   /// The primitive's attributes; valid until the next call. The last ones are kept, because exporters like to
   /// let many primitives share one set of vertices.
-  const Attributes& attributes_of(const tinygltf::Primitive& primitive, const std::string& path);
+  const Attributes& attributes_of(const tinygltf::Primitive& primitive, const std::string& path, const Bend* bend);
   Attributes read_attributes(const tinygltf::Primitive& primitive, const std::string& path,
                              const std::array<bool, 2>& reads) const;
   std::vector<std::uint32_t> read_triangles(const tinygltf::Primitive& primitive, std::uint64_t vertices,

@@ -1,12 +1,16 @@
 #include "scene/gltf/nodes.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "core/system/plain_text.h"
 #include "scene/gltf/hierarchy.h"
-#include "scene/gltf/transform.h"
+#include "scene/gltf/pose/animation.h"
+#include "scene/gltf/pose/transform.h"
+#include "scene/model/node_names.h"
 
 namespace carousel::scene {
 
@@ -32,7 +36,7 @@ class NodeReader {
         warn_(warn),
         scene_(scene) {}
 
-  std::vector<Mesh> take_spheres() { return std::move(spheres_); }
+  std::vector<NodeMesh> take_meshes() { return std::move(meshes_); }
 
   void walk(const std::vector<int>& roots) {
     // An explicit stack instead of recursion: a chain of nodes may be as long as the file.
@@ -40,11 +44,12 @@ class NodeReader {
       int node;
       DMat4 parent;
       std::size_t parent_entry;
+      std::size_t depth;
       bool visible;  ///< as far as the ancestors say
     };
     std::vector<Visit> stack;
     for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-      stack.push_back({*root, DMat4(1), Hierarchy::kWorld, true});
+      stack.push_back({*root, DMat4(1), Hierarchy::kWorld, 0, true});
     while (!stack.empty()) {
       const Visit visit = stack.back();
       stack.pop_back();
@@ -52,16 +57,21 @@ class NodeReader {
       const std::string path = json_path("/nodes", static_cast<std::size_t>(visit.node));
       const DMat4 local = node_transform(document_, node, path), world = visit.parent * local;
       const std::size_t entry = hierarchy_.add(visit.parent_entry, local, world, scene_.instances.size());
+      names_.add(plain_text(node.name), visit.depth, scene_.instances.size());
       const bool visible = visit.visible && shows_itself(visit.node);
       if (visible) {
-        if (const auto mesh = mesh_of(visit.node, node)) add_instances(node, *mesh, world, path);
+        if (document_.posing.on && node.mesh >= 0 && node.skin >= 0)
+          add_skinned(node, path);
+        else if (const auto mesh = mesh_of(visit.node, node, path))
+          add_instances(node, *mesh, world, path);
         add_light(node, world, path);
       }
       if (node.camera >= 0) add_camera(node, world, path);
       for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-        stack.push_back({*child, world, entry, visible});
+        stack.push_back({*child, world, entry, visit.depth + 1, visible});
     }
     hierarchy_.write(scene_);
+    std::move(names_).write(scene_);
   }
 
  private:
@@ -71,21 +81,61 @@ class NodeReader {
     return document_.json["nodes"][static_cast<std::size_t>(index)].value(pointer, true);
   }
 
-  std::optional<MeshId> mesh_of(int index, const tinygltf::Node& node) {
-    if (node.mesh >= 0) return MeshId(static_cast<std::uint32_t>(node.mesh));
+  /// The weights of the node's morph targets: its own, or else its mesh's; none if all are 0.
+  std::vector<double> weights_of(const tinygltf::Node& node, const std::string& path) const {
+    const auto index = static_cast<std::size_t>(node.mesh);
+    const std::size_t targets = morph_targets(document_, model_, index);
+    if (targets == 0) return {};
+    const bool own = !node.weights.empty();
+    const std::vector<double>& weights = own ? node.weights : model_.meshes[index].weights;
+    if (std::ranges::all_of(weights, [](double w) { return w == 0; })) return {};
+    if (weights.size() != targets)
+      document_.fail(json_path(own ? path : json_path("/meshes", index), "weights"),
+                     "expected " + std::to_string(targets) + " weights, one a morph target, found " +
+                         std::to_string(weights.size()));
+    return weights;
+  }
+
+  MeshId id_of(BentMesh bent) {
+    const auto [entry, fresh] = bent_ids_.try_emplace(bent, next_id());
+    if (fresh) meshes_.emplace_back(std::move(bent));
+    return MeshId(entry->second);
+  }
+
+  std::uint32_t next_id() const { return static_cast<std::uint32_t>(model_.meshes.size() + meshes_.size()); }
+
+  /// A mesh with a skin stands in the world, whatever the transform of its node (specification, 3.7.3.3), and so
+  /// outside all groups.
+  void add_skinned(const tinygltf::Node& node, const std::string& path) {
+    if (node.extensions.contains("EXT_mesh_gpu_instancing") && warn_)
+      warn_(document_.file + ": " + path + "/extensions/EXT_mesh_gpu_instancing: ignored, since the mesh has a skin");
+    budget_.take(kBytesPerInstance, path, "the instance");
+    const MeshId mesh =
+        id_of({static_cast<std::size_t>(node.mesh), static_cast<std::size_t>(node.skin), weights_of(node, path)});
+    hierarchy_.add(Hierarchy::kWorld, DMat4(1), DMat4(1), scene_.instances.size());
+    hierarchy_.add_own(DMat4(1));
+    scene_.instances.push_back({mesh, Affine{}});
+  }
+
+  std::optional<MeshId> mesh_of(int index, const tinygltf::Node& node, const std::string& path) {
+    if (node.mesh >= 0) {
+      std::vector<double> weights;
+      if (document_.posing.on) weights = weights_of(node, path);
+      if (weights.empty()) return MeshId(static_cast<std::uint32_t>(node.mesh));
+      return id_of({static_cast<std::size_t>(node.mesh), std::nullopt, std::move(weights)});
+    }
     const Json& json = document_.json["nodes"][static_cast<std::size_t>(index)];
     const Json::json_pointer pointer("/extras/carousel_sphere");
     if (!json.contains(pointer)) return std::nullopt;
     const Json& sphere = json.at(pointer);
     const auto radius = sphere["radius"].get<float>();
     const std::uint32_t material = sphere.value("material", default_material_.value);
-    const auto [entry, fresh] =
-        sphere_ids_.try_emplace({radius, material}, static_cast<std::uint32_t>(model_.meshes.size() + spheres_.size()));
+    const auto [entry, fresh] = sphere_ids_.try_emplace({radius, material}, next_id());
     if (fresh) {
       Mesh mesh;
       mesh.name = node.name.empty() ? "sphere" : node.name;
       mesh.spheres.push_back({Vec3(0), radius, MaterialId(material)});
-      spheres_.push_back(std::move(mesh));
+      meshes_.emplace_back(std::move(mesh));
     }
     return MeshId(entry->second);
   }
@@ -211,7 +261,9 @@ class NodeReader {
   const WarningSink& warn_;
   Scene& scene_;
   Hierarchy hierarchy_;
-  std::vector<Mesh> spheres_;
+  NodeNames names_;
+  std::vector<NodeMesh> meshes_;
+  std::map<BentMesh, std::uint32_t> bent_ids_;
   std::map<std::pair<float, std::uint32_t>, std::uint32_t> sphere_ids_;  // by radius and material
 };
 
@@ -229,9 +281,9 @@ std::vector<int> all_roots(const tinygltf::Model& model) {
 
 }  // namespace
 
-std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model, const AccessorTable& accessors,
-                             const ImportBudget& budget, MaterialId default_material, const WarningSink& warn,
-                             Scene& scene) {
+std::vector<NodeMesh> read_nodes(const GltfDocument& document, const tinygltf::Model& model,
+                                 const AccessorTable& accessors, const ImportBudget& budget,
+                                 MaterialId default_material, const WarningSink& warn, Scene& scene) {
   NodeReader reader(document, model, accessors, budget, default_material, warn, scene);
   if (model.scenes.empty()) {
     reader.walk(all_roots(model));
@@ -240,7 +292,7 @@ std::vector<Mesh> read_nodes(const GltfDocument& document, const tinygltf::Model
     scene.name = chosen.name;
     reader.walk(chosen.nodes);
   }
-  return reader.take_spheres();
+  return reader.take_meshes();
 }
 
 }  // namespace carousel::scene

@@ -18,20 +18,24 @@ std::size_t Scene::instanced_triangle_count() const {
 
 Aabb Scene::bounds() const {
   Aabb all;
-  for (const Instance& instance : instances) {
-    const Affine& m = instance.world_from_model;
-    const Mesh& mesh = meshes[instance.mesh.value];
-    for (const Vec3& p : mesh.positions) all.extend(m.linear * p + m.translation);
-    for (const Sphere& sphere : mesh.spheres) {
-      const Vec3 center = m.linear * sphere.center + m.translation;
-      // An ellipsoid reaches as far along an axis as that row of the map is long.
-      const Mat3 rows = glm::transpose(m.linear);
-      const Vec3 reach = sphere.radius * Vec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
-      all.extend(center - reach);
-      all.extend(center + reach);
-    }
-  }
+  for (const Instance& instance : instances) all.extend(bounds(instance));
   return all;
+}
+
+Aabb Scene::bounds(const Instance& instance) const {
+  Aabb box;
+  const Affine& m = instance.world_from_model;
+  const Mesh& mesh = meshes[instance.mesh.value];
+  for (const Vec3& p : mesh.positions) box.extend(m.linear * p + m.translation);
+  for (const Sphere& sphere : mesh.spheres) {
+    const Vec3 center = m.linear * sphere.center + m.translation;
+    // An ellipsoid reaches as far along an axis as that row of the map is long.
+    const Mat3 rows = glm::transpose(m.linear);
+    const Vec3 reach = sphere.radius * Vec3(glm::length(rows[0]), glm::length(rows[1]), glm::length(rows[2]));
+    box.extend(center - reach);
+    box.extend(center + reach);
+  }
+  return box;
 }
 
 }  // namespace carousel::scene

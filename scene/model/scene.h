@@ -9,6 +9,7 @@
 #include "core/types/aabb.h"
 #include "core/types/ids.h"
 #include "core/types/vec.h"
+#include "scene/model/pose_choice.h"
 
 namespace carousel::scene {
 
@@ -159,6 +160,12 @@ struct GroupPlacement {
   std::uint32_t member = 0;             ///< index of the member in the parent's group
 };
 
+/// A node of the file that has a name and shows something: its instances, and those of all nodes below it.
+struct NamedNode {
+  std::string name;
+  std::size_t first_instance = 0, instances = 0;  ///< in Scene::instances, one at least
+};
+
 struct Camera {
   std::string name;
   enum class Projection : std::uint8_t { kPerspective, kOrthographic } projection = Projection::kPerspective;
@@ -202,6 +209,8 @@ struct Scene {
   std::vector<Instance> instances;         ///< all there are, also those within groups
   std::vector<Group> groups;               ///< the hierarchy beside it, which changes nothing that a ray meets
   std::vector<GroupPlacement> placements;  ///< placements of groups, parents before those inside
+  std::vector<NamedNode> nodes;            ///< in depth-first order; a file may give one name to several
+  Motion motion;                           ///< what may move; instances and meshes stand still
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;  ///< at least one: the file's, or one that was made up
   Sky sky;
@@ -211,6 +220,8 @@ struct Scene {
   std::size_t instanced_triangle_count() const;  ///< over instances
   /// World-space bounds of all instances (of transformed vertices and spheres, float arithmetic, not conservative).
   Aabb bounds() const;
+  /// Those of one instance of the scene.
+  Aabb bounds(const Instance& instance) const;
 };
 
 }  // namespace carousel::scene

@@ -32,6 +32,11 @@ struct SkyConfig {
   float strength = 1;
 };
 
+struct AnimationConfig {
+  std::string name;
+  float time = 0;
+};
+
 struct SceneConfig {
   std::string file;
   std::optional<BuiltinScene> builtin;
@@ -41,6 +46,8 @@ struct SceneConfig {
   std::int64_t levels = 2;
   std::int64_t seed = 1;
   std::int64_t camera = 0;
+  std::optional<float> time;  ///< of all animations; absent, as `animation` is: the base pose
+  std::optional<AnimationConfig> animation;
   std::optional<SkyConfig> sky;
   ScenePlacement placement = ScenePlacement::kReplicated;
 };
@@ -51,6 +58,14 @@ template <class V>
 void describe(V& v, SkyConfig& c) {
   v.field("color", c.color, RealRange{0, 1e6}, "linear RGB", "The colour of the sky.");
   v.field("strength", c.strength, RealRange{0, 1e6}, "", "A factor on the colour. With 0 there is no sky.");
+}
+
+inline constexpr RealRange kMoment{0, 1e9};
+
+template <class V>
+void describe(V& v, AnimationConfig& c) {
+  v.field("name", c.name, "", "The name of the animation, or its index in the file.");
+  v.field("time", c.time, kMoment, "seconds", "The time at which it is shown. Times after its end are its end.");
 }
 
 template <class V>
@@ -68,6 +83,12 @@ void describe(V& v, SceneConfig& c) {
           "of them placed many times.");
   v.field("seed", c.seed, kSeed, "", "The seed of the built-in spheres, terrain, instances and sliver.");
   v.field("camera", c.camera, IntRange{0, 65535}, "", "The index of the camera among those of the scene.");
+  v.field_or_auto("time", c.time, kMoment, "seconds",
+                  "The moment at which a file is shown that has animations, skins or morph targets. All animations "
+                  "that move different nodes are played. With auto the file is shown in its base pose, in which "
+                  "animations, skins and morph targets are ignored.");
+  v.section("animation", c.animation,
+            "The one animation that is played, in place of time. Skins and morph targets follow it.");
   v.section("sky", c.sky,
             "A sky of one colour. Without this key a built-in scene has its own sky, and a file has the default.");
   v.choice("placement", c.placement,

@@ -77,6 +77,13 @@ class Rules {
       issue("scene.levels",
             fmt::format("only the built-in scene of instances has a depth to choose; expected 2, found {}",
                         c.scene.levels));
+    const char* const moment = c.scene.animation ? "scene.animation" : "scene.time";
+    if (c.scene.builtin && (c.scene.animation || c.scene.time))
+      issue(moment, "a built-in scene does not move; expected a scene.file beside this key");
+    if (c.scene.animation && c.scene.time)
+      issue("scene.time", "scene.animation has a time of its own; expected one of the two, found both");
+    if (c.scene.animation && c.scene.animation->name.empty())
+      issue("scene.animation.name", "expected the name or the index of an animation of the file");
     if (!c.scene.file.empty() && c.scene.builtin)
       issue("scene.builtin",
             "expected either file or builtin, found both; another scene takes the place of both with --set "

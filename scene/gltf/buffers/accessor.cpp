@@ -114,7 +114,7 @@ AccessorTable::AccessorTable(const GltfDocument& document, const GltfModel& mode
   quantized_ = lists_extension(document, "extensionsUsed", "KHR_mesh_quantization");
   if (!json.contains("accessors")) return;
   const Json& accessors = json["accessors"];
-  const Uses uses = uses_of(json);
+  const Uses uses = uses_of(json, document.posing);
   accessors_.reserve(accessors.size());
   for (std::size_t i = 0; i < accessors.size(); ++i) {
     try {
@@ -259,6 +259,24 @@ std::vector<float> AccessorTable::floats(std::size_t index, const std::string& p
                              (std::isnan(*bad) ? "NaN" : "infinite"));
   }
   return out;
+}
+
+double AccessorTable::last_scalar(std::size_t index) const {
+  const Accessor& accessor = accessors_[index];
+  float last = 0;
+  const auto take = [&](const Strided& where, std::uint64_t element) {
+    if (where.first == nullptr) return;
+    last = to_float(where.first + where.stride * static_cast<std::size_t>(element), accessor.component,
+                    accessor.normalized);
+  };
+  if (accessor.base && accessor.count > 0) take(*accessor.base, accessor.count - 1);
+  if (const auto& sparse = accessor.sparse; sparse && sparse->count > 0 && sparse->indices.first != nullptr) {
+    const unsigned char* const at =
+        sparse->indices.first + sparse->indices.stride * static_cast<std::size_t>(sparse->count - 1);
+    if (to_integer(at, sparse->index_component) + std::uint64_t{1} == accessor.count)
+      take(sparse->values, sparse->count - 1);
+  }
+  return std::isfinite(last) ? last : 0;
 }
 
 std::vector<std::uint32_t> AccessorTable::integers(std::size_t index, const std::string& path) const {

@@ -35,8 +35,16 @@ enum class AccessorUse {
   kColor,  // mesh attributes
   kTranslation,
   kRotation,
-  kScale,  // EXT_mesh_gpu_instancing
-  kIndices
+  kScale,  // EXT_mesh_gpu_instancing, and animations
+  kIndices,
+  kMorphPosition,
+  kMorphNormal,
+  kJoints,
+  kSkinWeights,
+  kInverseBind,
+  kTime,
+  kTurn,  // a rotation of an animation
+  kMorphWeight
 };
 
 /// The accessors of a file, each checked against its buffer views before anything is allocated for it.
@@ -76,7 +84,9 @@ class AccessorTable {
   /// Throws SceneError at `path` for the first one that is not finite and for more elements than the import's memory
   /// holds, and at the accessor for bad sparse indices.
   std::vector<float> floats(std::size_t accessor, const std::string& path) const;
-  /// All elements of a scalar integer accessor. Throws SceneError at `path` as floats() does.
+  /// The last element of a scalar accessor, as floats() gives it; 0 where the file has no data for it.
+  double last_scalar(std::size_t accessor) const;
+  /// All elements of an integer accessor. Throws SceneError at `path` as floats() does.
   std::vector<std::uint32_t> integers(std::size_t accessor, const std::string& path) const;
 
  private:

@@ -1,5 +1,5 @@
 // Which element and component types each attribute may have: glTF 2.0 specification, 3.7.2.1, and the tables
-// of KHR_mesh_quantization and EXT_mesh_gpu_instancing.
+// of KHR_mesh_quantization and EXT_mesh_gpu_instancing; 3.7.3 for skins, 3.11 for animations.
 #include <algorithm>
 
 #include "scene/gltf/buffers/accessor.h"
@@ -26,11 +26,12 @@ const char* name_of(Component component) {
 
 void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::string& path) const {
   const Accessor& accessor = accessors_[index];
+  enum class Signs { kUnsigned, kSigned, kBoth };
   struct Allowed {
     std::vector<std::string> types;
     bool floating, small_normalized, quantized_any, quantized_normalized;
+    Signs signs = Signs::kUnsigned;  ///< of normalised bytes and shorts
   };
-  // small_normalized: unsigned (colours, texture coordinates) or signed (rotations) bytes and shorts.
   const auto allowed = [&]() -> Allowed {
     switch (use) {
       case AccessorUse::kPosition:
@@ -45,7 +46,23 @@ void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::st
       case AccessorUse::kScale:
         return {{"VEC3"}, true, false, false, false};
       case AccessorUse::kRotation:
+        return {{"VEC4"}, true, true, false, false, Signs::kSigned};
+      case AccessorUse::kTurn:
+        return {{"VEC4"}, true, true, false, false, Signs::kBoth};
+      case AccessorUse::kMorphWeight:
+        return {{"SCALAR"}, true, true, false, false, Signs::kBoth};
+      case AccessorUse::kTime:
+        return {{"SCALAR"}, true, false, false, false};
+      case AccessorUse::kMorphPosition:
+        return {{"VEC3"}, true, false, true, true};
+      case AccessorUse::kMorphNormal:
+        return {{"VEC3"}, true, false, false, true};
+      case AccessorUse::kJoints:
+        return {{"VEC4"}, false, false, false, false};
+      case AccessorUse::kSkinWeights:
         return {{"VEC4"}, true, true, false, false};
+      case AccessorUse::kInverseBind:
+        return {{"MAT4"}, true, false, false, false};
       case AccessorUse::kIndices:
         return {{"SCALAR"}, false, false, false, false};
     }
@@ -59,15 +76,19 @@ void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::st
     document_.fail(path, "expected " + allowed.types[0] + (allowed.types.size() > 1 ? " or " + allowed.types[1] : "") +
                              " elements; " + found);
   }
-  const bool core = use == AccessorUse::kIndices
-                        ? !is_signed && accessor.component != Component::kFloat && !accessor.normalized
+  const bool whole = !is_signed && accessor.component != Component::kFloat && !accessor.normalized;
+  const bool core = use == AccessorUse::kIndices ? whole
+                    : use == AccessorUse::kJoints
+                        ? whole && is_small
                         : (accessor.component == Component::kFloat && allowed.floating) ||
                               (is_small && accessor.normalized && allowed.small_normalized &&
-                               is_signed == (use == AccessorUse::kRotation));
-  // Normals are quantised to signed components only; positions and texture coordinates to any small one.
-  const bool quantized = is_small && (use == AccessorUse::kNormal ? is_signed && accessor.normalized
-                                      : accessor.normalized       ? allowed.quantized_normalized
-                                                                  : allowed.quantized_any);
+                               (allowed.signs == Signs::kBoth || is_signed == (allowed.signs == Signs::kSigned)));
+  // Normals and differences are quantised to signed components only; positions and texture coordinates to any small
+  // one.
+  const bool only_signed =
+      use == AccessorUse::kNormal || use == AccessorUse::kMorphPosition || use == AccessorUse::kMorphNormal;
+  const bool quantized = is_small && (is_signed || !only_signed) &&
+                         (accessor.normalized ? allowed.quantized_normalized : allowed.quantized_any);
   if (!core && !(quantized && quantized_)) {
     document_.fail(path, quantized ? found + ", which needs the extension KHR_mesh_quantization"
                                    : "the component type is not allowed here: " + found);

@@ -64,7 +64,7 @@ std::string text_for_tinygltf(const Json& checked, const std::vector<Bytes>& buf
       if (!uses.cameras[i])
         json["cameras"][i] = {{"type", "perspective"}, {"perspective", {{"yfov", 1}, {"znear", 1}}}};
   }
-  json.erase("skins");
+  json.erase("skins");  // JointTable and pose_nodes() read these
   json.erase("animations");
   return json.dump();
 }

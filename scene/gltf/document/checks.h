@@ -1,13 +1,18 @@
 #pragma once
 
+#include <cstddef>
+
 #include "scene/gltf/document/document.h"
 #include "scene/model/warnings.h"
 
 namespace carousel::scene {
 
+/// The number of morph targets of all meshes, of the JSON as it was parsed.
+std::size_t count_morph_targets(const Json& json);
+
 /// Refuses a file that requires an extension Carousel does not read; warns once of the optional ones it
-/// ignores, and of skins, morph targets and animations, which are shown in their base pose. For the JSON as
-/// it was parsed, before check_schema.
+/// ignores, and of skins, morph targets and animations where document.posing leaves them in their base pose. For the
+/// JSON as it was parsed, before check_schema.
 void check_extensions(const GltfDocument& document, const WarningSink& warn);
 
 /// Checks rules that the schema cannot express, on the JSON after check_schema: buffer views lie inside their buffers,

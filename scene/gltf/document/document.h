@@ -5,6 +5,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -18,11 +19,19 @@ using Json = nlohmann::json;
 std::string json_path(const std::string& path, std::string_view key);
 std::string json_path(const std::string& path, std::size_t index);
 
+/// What of a file's skins, morph targets and animations is shown. The base pose, which is shown without it, uses none.
+struct Posing {
+  bool on = false;
+  std::vector<bool> animations;  ///< those that may be played
+};
+
 /// The parts of a glTF file, none of them checked yet.
 struct GltfDocument {
   std::string file;  ///< its name in messages
   Json json;         ///< an object; `asset.version` is 2.x
   bool is_glb = false;
+  Posing posing;
+  std::size_t morph_targets = 0;            ///< of all meshes
   std::span<const std::byte> binary_chunk;  ///< the binary chunk of a .glb; refers to the bytes that were parsed
 
   [[noreturn]] void fail(const std::string& path, const std::string& message) const;

@@ -22,24 +22,28 @@ constexpr auto kRead = std::to_array<std::string_view>({
     "KHR_texture_transform",
 });
 
-bool has_morph_targets(const Json& json) {
-  const auto meshes = json.find("meshes");
-  if (meshes == json.end() || !meshes->is_array()) return false;
-  for (const Json& mesh : *meshes) {
-    if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
-    for (const Json& primitive : mesh["primitives"]) {
-      if (primitive.is_object() && primitive.contains("targets")) return true;
-    }
-  }
-  return false;
-}
-
 bool has_entries(const Json& json, const char* key) {
   const auto entry = json.find(key);
   return entry != json.end() && entry->is_array() && !entry->empty();
 }
 
 }  // namespace
+
+std::size_t count_morph_targets(const Json& json) {
+  std::size_t out = 0;
+  const auto meshes = json.find("meshes");
+  if (meshes == json.end() || !meshes->is_array()) return out;
+  for (const Json& mesh : *meshes) {
+    if (!mesh.is_object() || !mesh.contains("primitives") || !mesh["primitives"].is_array()) continue;
+    // All primitives of a mesh have the same targets (specification, 3.7.2.2).
+    for (const Json& primitive : mesh["primitives"]) {
+      if (!primitive.is_object() || !primitive.contains("targets")) continue;
+      out += primitive["targets"].size();
+      break;
+    }
+  }
+  return out;
+}
 
 void check_extensions(const GltfDocument& document, const WarningSink& warn) {
   const Json& json = document.json;
@@ -65,11 +69,12 @@ void check_extensions(const GltfDocument& document, const WarningSink& warn) {
     }
   }
   if (!ignored.empty()) warn(document.file + ": optional extensions ignored: " + ignored);
+  if (document.posing.on) return;
   std::string posed;
   for (const char* key : {"animations", "skins"}) {
     if (has_entries(json, key)) posed += (posed.empty() ? "" : ", ") + std::string(key);
   }
-  if (has_morph_targets(json)) posed += (posed.empty() ? "" : ", ") + std::string("morph targets");
+  if (document.morph_targets > 0) posed += (posed.empty() ? "" : ", ") + std::string("morph targets");
   if (!posed.empty()) warn(document.file + ": ignored, the base pose is shown: " + posed);
 }
 

@@ -46,7 +46,7 @@ void report(const GltfDocument& document, const WarningSink& warn, bool used, co
 
 void check_details(const GltfDocument& document, const WarningSink& warn) {
   const Json& json = document.json;
-  const Uses uses = uses_of(json);
+  const Uses uses = uses_of(json, document.posing);
   const Json& images = entries(json, "images");
   for (std::size_t i = 0; i < images.size(); ++i) {
     if (images[i].contains("uri") == images[i].contains("bufferView"))
@@ -64,7 +64,7 @@ void check_details(const GltfDocument& document, const WarningSink& warn) {
     const Json& channels = animations[a]["channels"];
     for (std::size_t c = 0; c < channels.size(); ++c) {
       if (channels[c]["sampler"].get<std::size_t>() >= samplers) {
-        report(document, warn, false,
+        report(document, warn, uses.animations[a],
                json_path(json_path(json_path(json_path("/animations", a), "channels"), c), "sampler"),
                "expected an index into this animation's samplers, which has " + std::to_string(samplers) +
                    " entries, found " + channels[c]["sampler"].dump());

@@ -63,6 +63,7 @@ class Checker {
     if (!value.is_object()) fail(value, path, "an object");
     Json out = Json::object();
     for (const SchemaRule& rule : schema) {
+      if (rule.posed_only && !document_.posing.on) continue;
       const auto entry = value.find(rule.key);
       const std::string entry_path = json_path(path, rule.key);
       if (entry != value.end()) {
@@ -112,12 +113,10 @@ class Checker {
         return index(value, rule, path);
       case SchemaKind::kIndices:
         return each(value, path, [&](const Json& v, const std::string& p) { return index(v, rule, p); });
-      case SchemaKind::kIndexMap: {
-        if (!value.is_object()) fail(value, path, "an object");
-        Json out = Json::object();
-        for (const auto& [key, v] : value.items()) out[key] = index(v, rule, json_path(path, key));
-        return out;
-      }
+      case SchemaKind::kIndexMap:
+        return index_map(value, rule, path);
+      case SchemaKind::kIndexMaps:
+        return each(value, path, [&](const Json& v, const std::string& p) { return index_map(v, rule, p); });
       case SchemaKind::kIntegerMap: {
         if (!value.is_object()) fail(value, path, "an object");
         Json out = Json::object();
@@ -134,6 +133,13 @@ class Checker {
         return each(value, path, [&](const Json& v, const std::string& p) { return object(v, *rule.child, p); });
     }
     return {};
+  }
+
+  Json index_map(const Json& value, const SchemaRule& rule, const std::string& path) const {
+    if (!value.is_object()) fail(value, path, "an object");
+    Json out = Json::object();
+    for (const auto& [key, v] : value.items()) out[key] = index(v, rule, json_path(path, key));
+    return out;
   }
 
   template <class Check>
@@ -232,12 +238,13 @@ void check_schema(GltfDocument& document, const WarningSink& warn) {
   }
   const Checker checker(document, document.json);
   Json checked = checker.object(document.json, gltf_schema(), "");
-  const Uses uses = uses_of(checked);
+  const Uses uses = uses_of(checked, document.posing);
   for (const Fault& fault : checker.faults()) {
     const bool used = fault.array == "/textures"   ? uses.textures[fault.index]
                       : fault.array == "/images"   ? uses.images[fault.index]
                       : fault.array == "/samplers" ? uses.samplers[fault.index]
-                                                   : false;
+                      : fault.array == "/skins"    ? uses.skins[fault.index]
+                                                   : uses.animations[fault.index];
     if (used) throw fault.error;
     if (warn) warn(std::string(fault.error.what()) + "; ignored, since nothing that is shown uses it");
   }

@@ -154,11 +154,20 @@ const Schema kMaterial{text("name"),
 const Schema kDracoPrimitive{
     index("bufferView", "/bufferViews", true),
     {.key = "attributes", .kind = K::kIntegerMap, .required = true, .min = 0, .max = kMostSparse}};
+SchemaRule posed(SchemaRule rule) {
+  rule.posed_only = true;
+  return rule;
+}
+const SchemaRule kWeightList = posed(numbers("weights", 0));
+const SchemaRule kTargetList = posed({.key = "targets", .kind = K::kIndexMaps, .refers_to = "/accessors"});
 const Schema kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDracoPrimitive)};
-const Schema kPrimitive{index_map("attributes", "/accessors"), index("indices", "/accessors"),
-                        index("material", "/materials"), integer("mode", 0, 6),
+const Schema kPrimitive{index_map("attributes", "/accessors"),
+                        index("indices", "/accessors"),
+                        index("material", "/materials"),
+                        integer("mode", 0, 6),
+                        kTargetList,
                         object("extensions", kPrimitiveExtensions)};
-const Schema kMesh{text("name"), objects("primitives", kPrimitive, true)};
+const Schema kMesh{text("name"), objects("primitives", kPrimitive, true), kWeightList};
 
 // Cameras and lights.
 const Schema kPerspective{number("yfov", 1e-6, kPi, true), number("aspectRatio", 1e-6, 1e6),
@@ -195,17 +204,20 @@ const Schema kNode{text("name"),
                    numbers("translation", 3),
                    numbers("rotation", 4),
                    numbers("scale", 3),
+                   kWeightList,
                    object("extensions", kNodeExtensions),
                    {.key = "extras", .kind = K::kExtras, .child = &kNodeExtras}};
 const Schema kScene{text("name"), indices("nodes", "/nodes")};
 
-// These objects are read for their indices only.
+// Skins and animations.
 const Schema kSkin{index("inverseBindMatrices", "/accessors"), index("skeleton", "/nodes"),
                    indices("joints", "/nodes", true)};
 const Schema kTarget{index("node", "/nodes"), text("path", true)};
 const Schema kChannel{integer("sampler", 0, kMostSparse, true), object("target", kTarget, true)};
-const Schema kAnimationSampler{index("input", "/accessors", true), index("output", "/accessors", true)};
-const Schema kAnimation{objects("channels", kChannel, true), objects("samplers", kAnimationSampler, true)};
+const Schema kAnimationSampler{index("input", "/accessors", true), index("output", "/accessors", true),
+                               posed(name_of("interpolation", {"LINEAR", "STEP", "CUBICSPLINE"}))};
+const Schema kAnimation{text("name"), objects("channels", kChannel, true),
+                        objects("samplers", kAnimationSampler, true)};
 
 // The order of the checks: extensions come before the nodes whose indices refer to them.
 const Schema kRoot{object("asset", kAsset, true),

@@ -20,6 +20,7 @@ enum class SchemaKind {
   kIndex,       ///< into the array at JSON path `refers_to`
   kIndices,     ///< array of such
   kIndexMap,    ///< object of such
+  kIndexMaps,   ///< array of such objects
   kIntegerMap,  ///< object of integers in [min, max]
   kObject,      ///< with the rules of `child`
   kObjects,     ///< array of such
@@ -31,6 +32,7 @@ struct SchemaRule {
   const char* key;
   SchemaKind kind;
   bool required = false;
+  bool posed_only = false;  ///< read where a pose is shown; otherwise the key may hold anything, and is left out
   double min = -3.4028234663852886e38, max = 3.4028234663852886e38;
   std::size_t length = 0;
   const char* refers_to = nullptr;

@@ -37,6 +37,25 @@ int set_of(const Json& use) {
   return use.contains(moved) ? use.at(moved).get<int>() : use.value("texCoord", 0);
 }
 
+/// Marks what the pose reads: played animations, skins of nodes, differences of morph targets.
+void mark_posed(Uses& out, const Json& json, const Posing& posing) {
+  for (const Json& node : used_entries(json, "nodes")) mark(out.skins, node, "skin");
+  for (std::size_t s = 0; s < out.skins.size(); ++s)
+    if (out.skins[s]) mark(out.accessors, json["skins"][s], "inverseBindMatrices");
+  out.animations = posing.animations;
+  for (std::size_t a = 0; a < out.animations.size(); ++a) {
+    if (!out.animations[a]) continue;
+    for (const Json& sampler : json["animations"][a]["samplers"]) {
+      mark(out.accessors, sampler, "input");
+      mark(out.accessors, sampler, "output");
+    }
+  }
+  for (const Json& mesh : used_entries(json, "meshes"))
+    for (const Json& primitive : used_entries(mesh, "primitives"))
+      for (const Json& target : used_entries(primitive, "targets"))
+        for (const Json& accessor : target) out.accessors.at(accessor.get<std::size_t>()) = true;
+}
+
 }  // namespace
 
 bool reads_tex_coords(const Json& material, int set) {
@@ -48,7 +67,7 @@ bool reads_tex_coords(const Json& material, int set) {
   return false;
 }
 
-Uses uses_of(const Json& json) {
+Uses uses_of(const Json& json, const Posing& posing) {
   Uses out;
   const auto size = [&](const char* key) { return used_entries(json, key).size(); };
   out.textures.resize(size("textures"));
@@ -56,6 +75,9 @@ Uses uses_of(const Json& json) {
   out.samplers.resize(size("samplers"));
   out.cameras.resize(size("cameras"));
   out.accessors.resize(size("accessors"));
+  out.skins.resize(size("skins"));
+  out.animations.resize(size("animations"));
+  if (posing.on) mark_posed(out, json, posing);
   for (const Json& material : used_entries(json, "materials")) mark_textures(out.textures, material);
   for (std::size_t t = 0; t < out.textures.size(); ++t) {
     if (!out.textures[t]) continue;

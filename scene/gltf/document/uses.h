@@ -10,11 +10,12 @@ namespace carousel::scene {
 struct Uses {
   std::vector<bool> textures, images, samplers;  ///< used by materials, for other than occlusion, which is not read
   std::vector<bool> cameras;                     ///< used by nodes
-  std::vector<bool> accessors;                   ///< used by meshes and instances, not by animations or skins
+  std::vector<bool> accessors;                   ///< used by meshes and instances; by what is posed, if it is
+  std::vector<bool> skins, animations;           ///< used by the pose
 };
 
 /// For the JSON after check_schema.
-Uses uses_of(const Json& json);
+Uses uses_of(const Json& json, const Posing& posing = {});
 
 /// True if a texture of the material reads TEXCOORD_<set>; occlusion apart. For the JSON after check_schema.
 bool reads_tex_coords(const Json& material, int set);

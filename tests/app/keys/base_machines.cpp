@@ -5,12 +5,14 @@
 #include <fmt/format.h>
 
 #include "tests/scene/gltf/gltf_builder.h"
+#include "tests/scene/gltf/pose/moving_models.h"
 
 namespace carousel {
 
 namespace {
 
-/// Two alpha-blended squares, one of them rotated, before two coated ones, one of which shows its back.
+/// Two alpha-blended squares, one of them rotated, before two coated ones, one of which shows its back. Animations move
+/// the first.
 std::string layers(double roughness) {
   using Json = scene::GltfBuilder::Json;
   scene::GltfBuilder b;
@@ -33,6 +35,8 @@ std::string layers(double roughness) {
         b.push("cameras", {{"type", "perspective"}, {"perspective", {{"yfov", field_of_view}, {"znear", 0.1}}}});
     b.node({{"camera", camera}, {"translation", {0, 0, 3}}});
   }
+  scene::animate(b, 0, "translation", {0, 2}, {0, 0, 0, 0.4f, 0, 0}, "VEC3", 3, "LINEAR", "shift");
+  scene::animate(b, 0, "translation", {0, 2}, {0, 0, 0, 0, 0.5f, 0}, "VEC3", 3, "LINEAR", "lift");
   return b.text();
 }
 

@@ -141,7 +141,7 @@ TEST_F(GltfFiles, ImagesAreDecodedAtOnceWithTheSameResult) {
   }
   write("a.gltf", b.text());
   const auto executor = make_jthread_executor(4);
-  const Scene scene = load_gltf(folder_ / "a.gltf", {}, {}, executor.get());
+  const Scene scene = load_gltf(folder_ / "a.gltf", {}, {}, {}, executor.get());
   ASSERT_EQ(scene.images.size(), std::size_t{kImages});
   for (int i = 0; i < kImages; ++i) {
     const Image& image = scene.images[static_cast<std::size_t>(i)];
@@ -155,7 +155,7 @@ TEST_F(GltfFiles, ImagesAreDecodedAtOnceWithTheSameResult) {
   }
   write("b.gltf", b.text());
   for (int again = 0; again < 10; ++again)
-    expect_scene_error([&] { load_gltf(folder_ / "b.gltf", {}, {}, executor.get()); }, "/images/7", "the image is");
+    expect_scene_error([&] { load_gltf(folder_ / "b.gltf", {}, {}, {}, executor.get()); }, "/images/7", "the image is");
 }
 
 TEST_F(GltfFiles, FoldersAndMissingFilesAreRefused) {

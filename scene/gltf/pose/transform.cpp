@@ -1,4 +1,4 @@
-#include "scene/gltf/transform.h"
+#include "scene/gltf/pose/transform.h"
 
 #include <cmath>
 
