@@ -9,6 +9,10 @@ void add_inspect(CLI::App& program, InspectArguments& i) {
   CLI::App* inspect = program.add_subcommand("inspect", "List a scene's contents, the effects it needs and their cost");
   inspect->add_option("scene", i.scene, "glTF file, or builtin:<name>")->required()->type_name("SCENE");
   add_set_option(*inspect, i.sets);
+  inspect
+      ->add_option("--frame", i.frame,
+                   "Write the camera keys of a configuration that sees this node (default: list the scene)")
+      ->type_name("NODE");
   inspect->add_flag("--json", i.json, kJsonHelp);
 }
 

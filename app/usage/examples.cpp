@@ -25,6 +25,7 @@ const std::vector<Example>& examples() {
       {"accuracy", "carousel accuracy configs/demo.yaml", "time and errors of each level of accuracy"},
       {"accuracy", "carousel accuracy --certify --seconds 10", "the promises of the levels, judged exactly"},
       {"inspect", "carousel inspect my.glb", "contents of a scene, and the effects that it calls for"},
+      {"inspect", "carousel inspect my.glb --frame Chair", "a camera that sees this node"},
       {"follow", "carousel follow configs/demo.yaml --pixel 320,200", "the life of one ray"},
       {"report", "carousel report out/demo", "the page of a run, again"},
       {"schema", "carousel schema config --markdown", "every key with its meaning"},

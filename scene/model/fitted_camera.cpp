@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
+#include <span>
 #include <vector>
 
 #include <glm/geometric.hpp>
@@ -36,9 +38,9 @@ std::vector<Vec3> outline(const Mesh& mesh, std::size_t instances) {
 
 using Outlines = std::vector<std::vector<Vec3>>;
 
-Outlines outlines_of(const Scene& scene) {
+Outlines outlines_of(const Scene& scene, std::span<const Instance> shown) {
   std::vector<std::size_t> instances(scene.meshes.size());
-  for (const Instance& instance : scene.instances) ++instances[instance.mesh.value];
+  for (const Instance& instance : shown) ++instances[instance.mesh.value];
   Outlines out(scene.meshes.size());
   for (std::size_t m = 0; m < out.size(); ++m)
     if (instances[m] > 0) out[m] = outline(scene.meshes[m], instances[m]);
@@ -47,11 +49,11 @@ Outlines outlines_of(const Scene& scene) {
 
 /// The largest value of each direction's product with a point of the model, relative to `centre`.
 template <std::size_t N>
-std::array<double, N> extents(const Scene& scene, const Outlines& outlines, const DVec3& centre,
-                              const std::array<DVec3, N>& directions) {
+std::array<double, N> extents(const Scene& scene, std::span<const Instance> shown, const Outlines& outlines,
+                              const DVec3& centre, const std::array<DVec3, N>& directions) {
   std::array<double, N> out;
   out.fill(-std::numeric_limits<double>::infinity());
-  for (const Instance& instance : scene.instances) {
+  for (const Instance& instance : shown) {
     const glm::dmat3 linear(instance.world_from_model.linear);
     const DVec3 offset = DVec3(instance.world_from_model.translation) - centre;
     for (std::size_t d = 0; d < N; ++d) {
@@ -68,14 +70,18 @@ std::array<double, N> extents(const Scene& scene, const Outlines& outlines, cons
 }  // namespace
 
 Camera fitted_camera(const Scene& scene, float aspect) {
+  return fitted_camera(scene, aspect, scene.instances);
+}
+
+Camera fitted_camera(const Scene& scene, float aspect, std::span<const Instance> shown) {
   constexpr double kFieldOfView = 0.7, kMargin = 1.04;
   const DVec3 back = glm::normalize(DVec3(0.45, 0.35, 1));
   Camera camera = look_at(Vec3(back), Vec3(0), static_cast<float>(kFieldOfView));
   camera.name = "fitted";
   const DVec3 right(camera.right), up(camera.up);
-  const Outlines outlines = outlines_of(scene);
+  const Outlines outlines = outlines_of(scene, shown);
   const std::array<DVec3, 6> axes{DVec3{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
-  std::array<double, 6> box = extents(scene, outlines, DVec3(0), axes);
+  std::array<double, 6> box = extents(scene, shown, outlines, DVec3(0), axes);
   if (!(box[0] >= -box[3])) box.fill(1);  // there is nothing to see
   const DVec3 hi(box[0], box[1], box[2]), lo(-box[3], -box[4], -box[5]), centre = 0.5 * (hi + lo);
   const double high = std::tan(0.5 * kFieldOfView) / kMargin, wide = high * aspect;
@@ -83,7 +89,7 @@ Camera fitted_camera(const Scene& scene, float aspect) {
   // A point p is in the frame of a camera at c if right.(p - c) <= wide back.(c - p), and so on for the other edges:
   // each edge is a plane through the camera. The planes that touch the model give the camera's place.
   const std::array<DVec3, 5> edges{right + wide * back, wide * back - right, up + high * back, high * back - up, back};
-  std::array<double, 5> e = extents(scene, outlines, centre, edges);
+  std::array<double, 5> e = extents(scene, shown, outlines, centre, edges);
   if (!(e[0] > -1e300)) e = {1, 1, 1, 1, 0};
   const double size = std::max(1e-30, glm::length(hi - lo));
   double distance = std::max({(e[0] + e[1]) / (2 * wide), (e[2] + e[3]) / (2 * high), e[4] + 1e-3 * size});
