@@ -8,6 +8,7 @@
 #include "core/system/error.h"
 #include "scene/builtin/builtin.h"
 #include "scene/gltf/import.h"
+#include "scene/load_sky.h"
 #include "scene/model/camera_pose.h"
 #include "scene/model/fitted_camera.h"
 #include "scene/model/key_light.h"
@@ -16,19 +17,21 @@ namespace carousel::scene {
 
 namespace {
 
-std::filesystem::path find_file(const std::string& name, const std::filesystem::path& config_dir) {
+/// `key` names the file, of a kind that `kind` says.
+std::filesystem::path find_file(const char* key, const char* kind, const std::string& name,
+                                const std::filesystem::path& config_dir) {
   namespace fs = std::filesystem;
   std::error_code ignored;
   fs::path beside = config_dir / name;
   if (fs::is_regular_file(beside, ignored)) return beside;
   if (fs::is_regular_file(name, ignored)) return name;
   const bool folder = fs::is_directory(beside, ignored) || fs::is_directory(name, ignored);
-  throw ConfigError(
-      {{{},
-        "scene.file",
-        folder ? "expected a glTF file, found '" + name + "', which is a folder"
-               : "expected a glTF file, found '" + name + "', which is not there; looked in '" +
-                     (config_dir.empty() ? "." : config_dir.string()) + "' and in the working directory"}});
+  const std::string found = std::string("expected ") + kind + ", found '" + name + "', which is ";
+  throw ConfigError({{{},
+                      key,
+                      folder ? found + "a folder"
+                             : found + "not there; looked in '" + (config_dir.empty() ? "." : config_dir.string()) +
+                                   "' and in the working directory"}});
 }
 
 /// The moment that the configuration names.
@@ -41,7 +44,8 @@ std::optional<PoseChoice> pose_of(const SceneConfig& config) {
 Scene load_file(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
                 const ImageChoice& images, Executor* executor) {
   const std::optional<PoseChoice> pose = pose_of(config);
-  Scene scene = load_gltf(find_file(config.file, config_dir), warn, images, pose, executor);
+  Scene scene =
+      load_gltf(find_file("scene.file", "a glTF file", config.file, config_dir), warn, images, pose, executor);
   if (pose && !scene.motion.any() && warn)
     warn(config.file + ": has no animations, skins or morph targets; scene.time changes nothing");
   return scene;
@@ -72,8 +76,13 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
   if (config.file.empty() == !config.builtin.has_value()) {
     throw ConfigError("scene", "expected exactly one of file and builtin");
   }
+  std::optional<std::filesystem::path> map;  // sought first: the scene may be large
+  if (config.sky && !config.sky->file.empty())
+    map = find_file("scene.sky.file", "an environment map (.hdr or .exr)", config.sky->file, config_dir);
   Scene scene = config.builtin ? make_builtin(config) : load_file(config, config_dir, warn, images, executor);
-  if (config.sky || !config.builtin) {
+  if (map) {
+    scene.sky = {Vec3{0}, load_sky_map(*map, *config.sky, warn)};
+  } else if (config.sky || !config.builtin) {
     const SkyConfig sky = config.sky.value_or(SkyConfig{});
     scene.sky.radiance = sky.color * sky.strength;
   }

@@ -8,6 +8,7 @@
 
 #include "report/text/number_text.h"
 #include "scene/model/node_bounds.h"
+#include "shading/lights/sky_facts.h"
 
 namespace carousel::app {
 
@@ -46,6 +47,25 @@ Json motion_json(const scene::Motion& motion) {
   for (const scene::Motion::Clip& clip : motion.clips)
     animations.push_back({{"name", clip.name}, {"seconds", clip.seconds}, {"channels", clip.channels}});
   return {{"animations", animations}, {"skins", motion.skins}, {"morph_targets", motion.morph_targets}};
+}
+
+Json sky_json(const scene::SkyMap& map) {
+  const shading::SkyFacts facts = shading::sky_facts(map);
+  return {{"name", map.name},
+          {"width", map.width},
+          {"height", map.height},
+          {"mean", vector_json(facts.mean)},
+          {"most_luminance", facts.most},
+          {"brightest_percent_share", facts.brightest_percent}};
+}
+
+std::string sky_text(const scene::SkyMap& map) {
+  const shading::SkyFacts facts = shading::sky_facts(map);
+  return fmt::format(
+      "sky          {}: {} x {}, mean radiance {:.3g} {:.3g} {:.3g}, brightest luminance {:.3g}\n"
+      "             {:.1f} % of its light comes from the brightest 1 % of the sphere\n",
+      map.name, map.width, map.height, facts.mean.x, facts.mean.y, facts.mean.z, facts.most,
+      100 * facts.brightest_percent);
 }
 
 Json nodes_json(const scene::Scene& s) {
@@ -119,31 +139,34 @@ Json listing_json(const scene::Scene& s, const report::Shading& shading) {
   }
   for (const report::ShaderClass& c : shading.classes)
     classes.push_back({{"name", c.name}, {"materials", c.materials}});
-  return {{"scene",
-           {{"name", s.name},
-            {"triangles", h.triangles},
-            {"instanced_triangles", h.instanced},
-            {"spheres", h.spheres},
-            {"meshes", s.meshes.size()},
-            {"instances", s.instances.size()},
-            {"materials", h.materials},
-            {"textures", s.textures.size()},
-            {"images", s.images.size()},
-            {"image_bytes", h.image_bytes},
-            {"lights", h.lights},
-            {"cameras", h.cameras}}},
-          {"motion", motion_json(s.motion)},
-          {"bounds", bounds_json(s.bounds())},
-          {"nodes", nodes_json(s)},
-          {"made_up",
-           {{"camera", s.added.camera ? s.cameras[0].name : ""}, {"sun", s.added.sun}, {"material", s.added.material}}},
-          {"effects_choice", shading.effects_choice},
-          {"effects", effects},
-          {"classes", classes},
-          {"path_state_bytes", shading.path_state_bytes},
-          {"saved",
-           {{"path_state_bytes", shading.saved.path_state_bytes},
-            {"images_not_decoded", shading.saved.images_not_decoded}}}};
+  Json out{
+      {"scene",
+       {{"name", s.name},
+        {"triangles", h.triangles},
+        {"instanced_triangles", h.instanced},
+        {"spheres", h.spheres},
+        {"meshes", s.meshes.size()},
+        {"instances", s.instances.size()},
+        {"materials", h.materials},
+        {"textures", s.textures.size()},
+        {"images", s.images.size()},
+        {"image_bytes", h.image_bytes},
+        {"lights", h.lights},
+        {"cameras", h.cameras}}},
+      {"motion", motion_json(s.motion)},
+      {"bounds", bounds_json(s.bounds())},
+      {"nodes", nodes_json(s)},
+      {"made_up",
+       {{"camera", s.added.camera ? s.cameras[0].name : ""}, {"sun", s.added.sun}, {"material", s.added.material}}},
+      {"effects_choice", shading.effects_choice},
+      {"effects", effects},
+      {"classes", classes},
+      {"path_state_bytes", shading.path_state_bytes},
+      {"saved",
+       {{"path_state_bytes", shading.saved.path_state_bytes},
+        {"images_not_decoded", shading.saved.images_not_decoded}}}};
+  if (!s.sky.map.empty()) out["scene"]["sky_map"] = sky_json(s.sky.map);
+  return out;
 }
 
 std::string listing_text(const scene::Scene& s, const report::Shading& shading) {
@@ -161,6 +184,7 @@ std::string listing_text(const scene::Scene& s, const report::Shading& shading) 
                                         : "a camera that shows the whole model (the file has none)",
                        s.added.camera && s.added.sun ? "; " : "",
                        s.added.sun ? "a sun (the file has no light that could show it)" : "");
+  if (!s.sky.map.empty()) out += sky_text(s.sky.map);
   out += motion_text(s.motion);
   if (const Aabb box = s.bounds(); !box.empty()) out += fmt::format("bounds       {}\n", bounds_text(box));
   out += nodes_text(s);

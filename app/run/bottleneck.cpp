@@ -26,6 +26,9 @@ class PilotWorkload final : public Workload {
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   std::uint32_t shader(const RayResult& result) const override { return job_.workload().shader(result); }
+  void sky_reads(const RayResult& result, std::vector<SkyRead>& out) const override {
+    job_.workload().sky_reads(result, out);
+  }
   PathMemory path_memory(const RayTag& tag) const override { return job_.workload().path_memory(tag); }
   Generated generate(WorkerId worker, std::size_t max_rays, RayBatch& out) override {
     return job_.workload().generate(worker, max_rays, out);

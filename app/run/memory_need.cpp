@@ -48,6 +48,7 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   std::uint64_t bytes =
       scene.instances.size() * sizeof(scene::Instance) + scene.placements.size() * sizeof(scene::GroupPlacement);
   for (const scene::Image& image : scene.images) bytes += image.rgba.size();
+  bytes += scene.sky.map.texels.size() * (sizeof(Vec3) + sizeof(std::uint32_t));  // with its SkyLight
   for (const scene::Mesh& mesh : scene.meshes) {
     bytes += mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3);
     bytes += (mesh.uv0.size() + mesh.uv1.size()) * sizeof(Vec2) + mesh.colors.size() * sizeof(Vec4);

@@ -261,8 +261,9 @@ scene::View view_of(const Config& config) {
 
 Config Prepared::absolute_config() const {
   Config out = config();
-  for (std::string* name : {&out.scene.file, &out.workload.rays_from, &out.workload.memory_trace}) {
-    if (name->empty()) continue;
+  std::string* map = out.scene.sky ? &out.scene.sky->file : nullptr;
+  for (std::string* name : {&out.scene.file, map, &out.workload.rays_from, &out.workload.memory_trace}) {
+    if (name == nullptr || name->empty()) continue;
     std::error_code ignored;
     const std::string path = std::filesystem::absolute(find_beside(config_folder, *name), ignored).string();
     if (plain_text(path) == path) *name = path;  // others cannot stand in a file of text

@@ -55,6 +55,10 @@ constexpr bool has_many_lanes(const TestersConfig& testers) {
   return testers.simd.lanes > 1;
 }
 
+constexpr bool has_sky_map(const C& c) {
+  return c.scene.sky && !c.scene.sky->file.empty();
+}
+
 inline constexpr Condition kCycle{[](const C& c, const S&) { return c.engine.kind == EngineKind::kCycle; },
                                   "the native engine has no clock"};
 inline constexpr Condition kNative{[](const C& c, const S&) { return c.engine.kind == EngineKind::kNative; },
@@ -188,5 +192,8 @@ inline constexpr Condition kProfile{[](const C& c, const S&) { return c.energy.p
                                     "energy.profile is none"};
 inline constexpr Condition kBudget{[](const C& c, const S&) { return c.area.budget_mm2.has_value(); },
                                    "there is no area.budget_mm2"};
+inline constexpr Condition kSkyOfOneColor{[](const C& c, const S&) { return !has_sky_map(c); },
+                                          "the sky is a map (scene.sky.file)"};
+inline constexpr Condition kSkyMap{[](const C& c, const S&) { return has_sky_map(c); }, "the sky has no map"};
 
 }  // namespace carousel::conditions

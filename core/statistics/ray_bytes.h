@@ -36,10 +36,10 @@ struct TransformedRayBytes {
 };
 
 /// Data of rays and paths that ray control and shading have read from memory and written to it (`memory.ray_records`,
-/// `path_state`, `film`).
+/// `path_state`, `film`, `sky_map`).
 struct RayDataBytes {
   std::uint64_t records_read = 0, records_written = 0, states_read = 0, states_written = 0, film_read = 0,
-                film_written = 0;
+                film_written = 0, sky_read = 0;
 
   static constexpr auto counters() {
     using C = RayDataBytes;
@@ -51,6 +51,8 @@ struct RayDataBytes {
         Counter{"states_written", &C::states_written, "bytes", "states of paths written with new rays"},
         Counter{"film_read", &C::film_read, "bytes", "pixels read to add the light of a path"},
         Counter{"film_written", &C::film_written, "bytes", "pixels written"},
+        Counter{"sky_read", &C::sky_read, "bytes",
+                "texels and tables of the map of the sky read before rays were shaded"},
     };
   }
   friend bool operator==(const RayDataBytes&, const RayDataBytes&) = default;

@@ -36,6 +36,13 @@ struct PathMemory {
   std::optional<std::uint32_t> pixel;  ///< to which it adds its light; absent if there is no picture
 };
 
+/// A read of the map of the sky, or of the tables by which light is drawn from it.
+struct SkyRead {
+  std::uint64_t offset = 0;  ///< from the start of map and tables, which lie in one piece
+  std::uint32_t bytes = 0;
+  friend bool operator==(const SkyRead&, const SkyRead&) = default;
+};
+
 using RayBatch = std::vector<RayRequest>;
 using HitBatch = std::vector<RayResult>;
 
@@ -66,6 +73,9 @@ class Workload {
 
   /// The places in memory of the path of a ray in flight.
   virtual PathMemory path_memory(const RayTag& /*tag*/) const { return {}; }
+
+  /// Appends what shading a completed ray reads of the sky. Call before the ray is given to shade().
+  virtual void sky_reads(const RayResult& /*result*/, std::vector<SkyRead>& /*out*/) const {}
 
   /// Takes completed rays, in any order and mix, each ray exactly once; appends the rays they give rise to.
   virtual void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) = 0;

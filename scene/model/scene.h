@@ -10,6 +10,7 @@
 #include "core/types/ids.h"
 #include "core/types/vec.h"
 #include "scene/model/pose_choice.h"
+#include "scene/model/sky_map.h"
 
 namespace carousel::scene {
 
@@ -197,6 +198,7 @@ struct Added {
 
 struct Sky {
   Vec3 radiance{0};  ///< constant over the sphere
+  SkyMap map{};      ///< added to it; empty: there is none
 };
 
 /// Everything an experiment sees; immutable once made. Materials has at least one entry.

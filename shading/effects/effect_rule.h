@@ -67,6 +67,7 @@ struct EffectRule {
   /// evaluations, every branch taken); a sine, exponential or power counts as the 8 or 16 of its polynomial. 0: the
   /// effect is part of a plain hit, or is no work of the shader.
   std::uint32_t products = 0;
+  std::uint32_t miss_products = 0;  ///< likewise at a ray that leaves the scene, which makes texture_reads as well
   bool evaluated_without =
       false;  ///< with `effects: all` also at surfaces that do not have it; others are only checked
   std::uint32_t (*cycles_per_hit)(const Config&) = nullptr;    ///< replaces lookups and products: not a shader's work

@@ -2,6 +2,8 @@
 #include <initializer_list>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "shading/effects/effect_rule.h"
 #include "shading/effects/secondary_rays.h"
 #include "shading/math/luminance.h"
@@ -67,6 +69,13 @@ bool shines(const PunctualLight& light) {
 template <Kind kKind>
 void remove_lights(Scene& scene) {
   std::erase_if(scene.lights, [](const PunctualLight& light) { return light.kind == kKind; });
+}
+
+Need environment_map(const PlanInput& in) {
+  const scene::SkyMap& map = in.scene.sky.map;
+  if (map.empty()) return {};
+  if (!is_lit(map)) return {false, fmt::format("the map {} is black", map.name)};
+  return {true, fmt::format("the map {} of {} x {}", map.name, map.width, map.height)};
 }
 
 Need need_if(bool called_for, const char* caller) {
@@ -246,6 +255,15 @@ constexpr std::array<EffectRule, kEffects> kRules{{
     {.effect = Effect::kSky,
      .scene = [](const PlanInput& in) { return need_if(max_component(in.scene.sky.radiance) > 0, "sky"); },
      .disable_in_scene = [](Scene& scene) { scene.sky.radiance = Vec3{0}; }},
+    // A surface draws a direction from the map (32 products) and looks up the light that comes from there: its place on
+    // the map (48), the filter (18), density and weight (6). A ray that leaves the scene looks it up alone, and finds
+    // the density for its weight (11).
+    {.effect = Effect::kEnvironmentMap,
+     .scene = environment_map,
+     .disable_in_scene = [](Scene& scene) { scene.sky.map = {}; },
+     .texture_reads = 1,
+     .products = 104,
+     .miss_products = 77},
     {.effect = Effect::kDepthOfField,
      .scene = [](const PlanInput& in) { return need_if(in.config.camera.aperture > 0, "camera.aperture"); }},
     {.effect = Effect::kShadowRays,

@@ -17,8 +17,8 @@ bool any_called_for(const EffectsPlan& plan, std::initializer_list<Effect> effec
   return false;
 }
 bool has_light(const PlanInput& in) {
-  return any_called_for(in.so_far,
-                        {Effect::kPointLights, Effect::kSpotLights, Effect::kDirectionalLights, Effect::kAreaLights});
+  return any_called_for(in.so_far, {Effect::kPointLights, Effect::kSpotLights, Effect::kDirectionalLights,
+                                    Effect::kAreaLights, Effect::kEnvironmentMap});
 }
 bool has_lit_surface(const PlanInput& in) {
   for (std::size_t i = 0; i < in.scene.materials.size(); ++i)

@@ -26,11 +26,12 @@ float finite_weight(float flux) {
 
 }  // namespace
 
-LightSet::LightSet(const scene::Scene& scene, bool punctual, bool primitives) : scene_(scene), primitives_(scene) {
+LightSet::LightSet(const scene::Scene& scene, bool punctual, bool primitives, bool sky)
+    : scene_(scene), primitives_(scene), sky_(scene.sky.map) {
   std::vector<float> weights;
-  weights.reserve(scene.lights.size() + primitives_.all().size());
+  weights.reserve(scene.lights.size() + primitives_.all().size() + 1);
   float radius = 0;
-  if (!scene.lights.empty()) {
+  if (!scene.lights.empty() || !sky_.empty()) {
     const Aabb bounds = scene.bounds();
     if (!bounds.empty()) radius = 0.5f * glm::length(bounds.extent());
   }
@@ -39,12 +40,14 @@ LightSet::LightSet(const scene::Scene& scene, bool punctual, bool primitives) : 
   }
   for (const EmissivePrimitive& light : primitives_.all())
     weights.push_back(primitives ? finite_weight(light.flux) : 0.0f);
+  if (sky && !sky_.empty()) weights.push_back(finite_weight(kPi * radius * radius * float(sky_.irradiance())));
   choice_ = LightChoice(weights);
 }
 
 LightSample LightSet::sample(const LightDraw& draw, const Vec3& origin, SpawnOffset offset) const {
   const std::uint32_t index = choice_.choose(draw.choice);
   const float probability = choice_.probability(index);
+  if (index == sky_index()) return sample_sky(probability, draw.point);
   if (index >= scene_.lights.size()) {
     return sample_primitive(primitives_.all()[index - scene_.lights.size()], probability, draw.point, origin, offset);
   }
@@ -120,6 +123,26 @@ LightSample LightSet::sample_primitive(const EmissivePrimitive& light, float pro
   // The shadow ray ends before the light itself, whose opacity would have passed a share of the rays.
   if (point.material->alpha_mode != scene::AlphaMode::kOpaque) s.radiance *= opacity(scene_, point);
   return s;
+}
+
+LightSample LightSet::sample_sky(float probability, const Vec2& u) const {
+  const SkyLight::Sample sky = sky_.sample(u);
+  LightSample s;
+  s.direction = s.wi = sky.direction;
+  s.tmax = kInfinity;
+  s.pdf = probability * sky.pdf;
+  s.radiance = sky_.radiance(sky.direction) * (1.0f / s.pdf);
+  return s;
+}
+
+void LightSet::append_sky_reads(const LightDraw& draw, std::vector<SkyRead>& out) const {
+  if (!choice_.empty() && choice_.choose(draw.choice) == sky_index()) sky_.append_reads(draw.point, out);
+}
+
+SkyLight::Seen LightSet::sky(const Vec3& direction) const {
+  SkyLight::Seen seen = sky_.look(direction);
+  seen.pdf *= sky_index() < choice_.size() ? choice_.probability(sky_index()) : 0.0f;
+  return seen;
 }
 
 float LightSet::primitive_pdf(const Hit& hit, const TriangleGeometry& geometry, bool front, float cos_light) const {

@@ -8,6 +8,7 @@
 #include "scene/model/scene.h"
 #include "shading/lights/emissive_primitives.h"
 #include "shading/lights/light_choice.h"
+#include "shading/lights/sky_light.h"
 #include "shading/math/sampler.h"
 #include "shading/surface/triangle_geometry.h"
 
@@ -22,12 +23,12 @@ struct LightSample {
   float pdf = 0;      ///< density per solid angle; 0 for lights that no other ray can hit
 };
 
-/// Everything that next-event estimation chooses from: punctual lights and emissive triangles and spheres, in
-/// proportion to their flux. Immutable; any thread.
+/// Everything that next-event estimation chooses from: punctual lights, emissive triangles and spheres, and the map of
+/// the sky, in proportion to their flux. Immutable; any thread.
 class LightSet {
  public:
-  /// `punctual` and `primitives` say which lights can be chosen.
-  explicit LightSet(const scene::Scene& scene, bool punctual = true, bool primitives = true);
+  /// `punctual`, `primitives` and `sky` say which lights can be chosen.
+  explicit LightSet(const scene::Scene& scene, bool punctual = true, bool primitives = true, bool sky = true);
 
   bool empty() const { return choice_.empty(); }
   /// Precondition: !empty().
@@ -37,13 +38,28 @@ class LightSet {
   /// met, on its `front` or not, under |cosine| `cos_light`.
   float primitive_pdf(const Hit& hit, const TriangleGeometry& geometry, bool front, float cos_light) const;
 
+  /// The sky has a map from which light comes.
+  bool has_sky() const { return !sky_.empty(); }
+  /// The map as a ray sees it that leaves the scene, and the density with which sample() finds this direction.
+  /// Precondition: has_sky().
+  SkyLight::Seen sky(const Vec3& direction) const;
+  /// Appends what sky() reads of memory. Precondition: has_sky().
+  void append_sky_reads(const Vec3& direction, std::vector<SkyRead>& out) const { sky_.append_reads(direction, out); }
+  /// Appends what sample() reads of the sky; nothing if it draws another light.
+  void append_sky_reads(const LightDraw& draw, std::vector<SkyRead>& out) const;
+
  private:
   LightSample sample_primitive(const EmissivePrimitive& light, float probability, const Vec2& u, const Vec3& origin,
                                SpawnOffset offset) const;
+  LightSample sample_sky(float probability, const Vec2& u) const;
+  std::uint32_t sky_index() const {
+    return static_cast<std::uint32_t>(scene_.lights.size() + primitives_.all().size());
+  }
 
   const scene::Scene& scene_;
   EmissivePrimitives primitives_;
-  LightChoice choice_;  // punctual lights first, then primitives
+  SkyLight sky_;
+  LightChoice choice_;  // punctual lights first, then primitives, then the sky
 };
 
 }  // namespace carousel::shading

@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 
 #include "core/numeric/fixed_point.h"
-#include "shading/lights/sky.h"
 #include "shading/math/exponential.h"
 #include "shading/tracer/path_tracer-inl.h"
 
@@ -52,7 +51,8 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
       paths_(PixelOrder(u32(config.image.width), u32(config.image.height), u32(config.image.samples))),
       camera_(scene.cameras.at(static_cast<std::size_t>(config.scene.camera)), lens(config.camera, plan_),
               u32(config.image.width), u32(config.image.height)),
-      lights_(scene, plan_.on(Effect::kShadowRays), plan_.on(Effect::kShadowRays) && plan_.on(Effect::kAreaLights)),
+      lights_(scene, plan_.on(Effect::kShadowRays), plan_.on(Effect::kShadowRays) && plan_.on(Effect::kAreaLights),
+              plan_.on(Effect::kShadowRays)),
       media_(plan_.on(Effect::kVolume)),
       panes_(has_panes(plan_)),
       pool_(max_paths_in_flight, paths_.count(), plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
@@ -114,10 +114,20 @@ void PathTracer::shade(WorkerId worker_id, const HitBatch& completed, RayBatch& 
 ShadeWork PathTracer::extra_work(const RayResult& result) const {
   const Hit& hit = result.hit;
   const bool shadow = result.tag.kind == RayKind::kShadow;
-  if (!any_work_ || (shadow && !panes_) || !hit.valid()) return {};
+  if (!hit.valid()) return shadow ? ShadeWork{} : miss_work_;
+  if (!any_work_ || (shadow && !panes_)) return {};
   const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
   const Surface& surface = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
   return shadow && !surface.pane ? ShadeWork{} : surface.work;
+}
+
+void PathTracer::sky_reads(const RayResult& result, std::vector<SkyRead>& out) const {
+  if (!lights_.has_sky() || result.tag.kind == RayKind::kShadow) return;
+  const Hit& hit = result.hit;
+  if (!hit.valid()) return lights_.append_sky_reads(result.ray.direction, out);
+  if (triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v).material->unlit) return;
+  const PathState& path = pool_.state(result.tag.path);
+  lights_.append_sky_reads(sampler_.light(path.pixel, path.sample, result.tag.bounce), out);
 }
 
 std::uint32_t PathTracer::shader(const RayResult& result) const {
@@ -140,7 +150,15 @@ void PathTracer::shade_shadow(const RayResult& result, Worker& worker, RayBatch&
 
 void PathTracer::shade_miss(const RayResult& result, Worker& worker) {
   PathState& path = pool_.state(result.tag.path);
-  add_radiance(path, path.throughput * sky_radiance(scene_.sky, result.ray.direction), worker);
+  const Vec3& direction = result.ray.direction;
+  Vec3 radiance = scene_.sky.radiance;
+  if (lights_.has_sky()) {
+    const SkyLight::Seen seen = lights_.sky(direction);
+    // Light was sampled from the surface that a bounce ray comes from, panes or not.
+    const bool shared = result.tag.kind == RayKind::kBounce;
+    radiance += seen.radiance * (shared ? detail::balance(path.bounce_pdf, seen.pdf) : 1.0f);
+  }
+  add_radiance(path, path.throughput * radiance, worker);
 }
 
 Vec3 PathTracer::passed(std::uint32_t medium, float distance) const {
@@ -199,6 +217,7 @@ void PathTracer::choose_surfaces() {
   const std::vector<SurfaceClass> classes = surface_classes(scene_, plan_);
   const std::vector<ShaderParts> parts = parts_of_materials(scene_);
   const std::vector<ShadeWork> work = shading::extra_work(scene_, plan_);
+  miss_work_ = extra_work_of_misses(plan_);
   const Lights lights = media_                        ? Lights::kEmissiveAndMedia
                         : plan_.on(Effect::kEmission) ? Lights::kEmissive
                         : !lights_.empty()            ? Lights::kPunctual

@@ -35,8 +35,8 @@ namespace carousel::shading {
 /// of batches and any order. Each material is shaded by the least code that has all effects it calls for, chosen once
 /// (surface_class.h). Shadow rays pass panes (surface/pane.h), which count among the surfaces of a path, and treat
 /// other transmissive surfaces as opaque: light passes these by bounce rays alone, and at points of glass by shadow
-/// rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light from the sky, which only such
-/// rays find, is not seen there.
+/// rays on either side. The last of `image.max_depth` surfaces sends no bounce ray: light from a sky of
+/// one colour, which only such rays find, is not seen there.
 class PathTracer : public Workload {
  public:
   /// Keeps a reference to `scene`, which has been through strip_effects() with config.shading.effects. At most
@@ -63,6 +63,7 @@ class PathTracer : public Workload {
   ShadeWork extra_work(const RayResult& result) const override;
   /// Shading a miss, a shadow ray, or a hit of one class of surfaces.
   std::uint32_t shader(const RayResult& result) const override;
+  void sky_reads(const RayResult& result, std::vector<SkyRead>& out) const override;
   PathMemory path_memory(const RayTag& tag) const override {
     return {plan_.path_state_bytes(), pool_.state(tag.path).pixel};
   }
@@ -161,6 +162,7 @@ class PathTracer : public Workload {
   const LightSet lights_;
   const bool media_, panes_;
   bool any_work_ = false;          ///< a material has extra_work()
+  ShadeWork miss_work_;            ///< of a ray that leaves the scene
   std::vector<Surface> surfaces_;  // by material
   PathPool pool_;
   Film film_;

@@ -60,19 +60,44 @@ std::vector<std::pair<SurfaceClass, std::uint32_t>> count_classes(const scene::S
   return out;
 }
 
+namespace {
+
+/// True if every lit surface pays for an effect of the whole scene, a light that shadow rays look for.
+bool is_at_surfaces(const EffectsPlan& plan, Effect effect) {
+  return plan.on(effect) && plan.of(effect).called_for && plan.on(Effect::kShadowRays);
+}
+
+}  // namespace
+
+ShadeWork extra_work_of_misses(const EffectsPlan& plan) {
+  ShadeWork work;
+  for (const EffectRule& rule : effect_rules()) {
+    if (rule.miss_products == 0) continue;
+    if (plan.on(rule.effect) && plan.of(rule.effect).called_for) {
+      work.products += rule.miss_products;
+      work.lookups += rule.texture_reads;
+    } else if (plan.everything) {
+      work.products += kCheckProducts;
+    }
+  }
+  return work;
+}
+
 std::vector<ShadeWork> extra_work(const scene::Scene& scene, const EffectsPlan& plan) {
   std::vector<ShadeWork> work;
   for (const Material& material : scene.materials) {
     ShadeWork& own = work.emplace_back();
     for (const EffectRule& rule : effect_rules()) {
       if (rule.products == 0) continue;
-      if (requires_effect(rule, material)) {
+      const bool lit_by = rule.scene != nullptr && !material.unlit && is_at_surfaces(plan, rule.effect);
+      if (lit_by) own.lookups += rule.texture_reads;
+      if (lit_by || requires_effect(rule, material)) {
         own.products += rule.products;
       } else if (plan.everything) {
         own.products += rule.evaluated_without && !material.unlit ? rule.products : kCheckProducts;
       }
     }
-    own.lookups = static_cast<std::uint32_t>(textures_read(material).size());
+    own.lookups += static_cast<std::uint32_t>(textures_read(material).size());
   }
   for (const EffectRule& rule : effect_rules()) {
     if (rule.mesh == nullptr || rule.products == 0) continue;

@@ -37,5 +37,7 @@ std::vector<ShaderParts> parts_of_materials(const scene::Scene& scene);
 /// By material: the lookups and products of a hit beyond those of a plain surface. With `all` the effects that the
 /// material does not have count as well: as checks, or in full if the code evaluates them without a check.
 std::vector<ShadeWork> extra_work(const scene::Scene& scene, const EffectsPlan& plan);
+/// Likewise of a ray that leaves the scene, other than a shadow ray.
+ShadeWork extra_work_of_misses(const EffectsPlan& plan);
 
 }  // namespace carousel::shading

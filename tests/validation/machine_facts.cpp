@@ -117,6 +117,10 @@ class RecordedWorkload final : public WrappedWorkload {
       ray["lookups"] = work.lookups;
       ray["products"] = work.products;
       ray["shader"] = inner_.shader(result);
+      std::vector<SkyRead> reads;
+      inner_.sky_reads(result, reads);
+      ray["sky"] = Json::array();
+      for (const SkyRead& read : reads) ray["sky"].push_back({read.offset, read.bytes});
       ray["children"] = Json::array();
       const std::size_t before = out.size();
       inner_.shade(worker, {result}, out);

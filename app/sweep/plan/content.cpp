@@ -89,6 +89,7 @@ std::string ContentDigests::of(const SceneConfig& scene, const WorkloadConfig& w
   if (workload.kind == WorkloadConfig::Kind::kTraffic) return out;
   if (workload.kind == WorkloadConfig::Kind::kMemoryTrace) return of_file(workload.memory_trace);
   if (!scene.file.empty()) out += of_scene(scene.file);
+  if (scene.sky && !scene.sky->file.empty()) out += of_file(scene.sky->file);
   if (workload.kind == WorkloadConfig::Kind::kRaysFrom) out += of_file(workload.rays_from);
   return out;
 }

@@ -22,7 +22,11 @@ struct MemoryConfig {
   enum class Write { kThrough, kBack } l2_write = Write::kThrough;
   std::int64_t l2_ray_ways = 0, l2_answer_bytes_per_cycle = 0;
   enum class RayRecords { kResource, kMaster } ray_records = RayRecords::kResource;
-  enum class ShadingData { kFree, kMemory } path_state = ShadingData::kFree, film = ShadingData::kFree;
+  enum class ShadingData {
+    kFree,
+    kMemory
+  } path_state = ShadingData::kFree,
+    film = ShadingData::kFree, sky_map = ShadingData::kFree;
   std::int64_t l1_kib = 0, l1_ways = 8, l1_lines_per_cycle = 1, l1_mshrs = 0, l1_latency_cycles = 20;
   DramConfig dram;
 };
@@ -122,6 +126,10 @@ void describe(V& v, MemoryConfig& c) {
            "when that is shaded.")
       .only(EngineKind::kCycle, "simulated memory", MemoryConfig::ShadingData::kMemory);
   v.choice("film", c.film, "Light is added to the picture for nothing, or a pixel is read from memory and written.")
+      .only(EngineKind::kCycle, "simulated memory", MemoryConfig::ShadingData::kMemory);
+  v.choice("sky_map", c.sky_map,
+           "The texels of scene.sky.file that shading reads, and the tables by which it draws light from the map, are "
+           "where shading needs them, or they are read from memory for each ray before that is shaded.")
       .only(EngineKind::kCycle, "simulated memory", MemoryConfig::ShadingData::kMemory);
   v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
           "The number of packets whose shapes are fetched in advance.")

@@ -30,6 +30,8 @@ inline constexpr auto kEnumNames<ScenePlacement> = [] {
 struct SkyConfig {
   Vec3 color{0.6f, 0.7f, 0.9f};
   float strength = 1;
+  std::string file{};
+  float rotation = 0;
 };
 
 struct AnimationConfig {
@@ -56,8 +58,13 @@ namespace config {
 
 template <class V>
 void describe(V& v, SkyConfig& c) {
-  v.field("color", c.color, RealRange{0, 1e6}, "linear RGB", "The colour of the sky.");
-  v.field("strength", c.strength, RealRange{0, 1e6}, "", "A factor on the colour. With 0 there is no sky.");
+  v.field("color", c.color, RealRange{0, 1e6}, "linear RGB", "The colour of the sky, where it has no map.");
+  v.field("strength", c.strength, RealRange{0, 1e6}, "", "A factor on the colour or the map. With 0 the sky is black.");
+  v.field("file", c.file, "",
+          "An environment map, in longitude and latitude: a Radiance file (.hdr) or an OpenEXR file. Its path is "
+          "relative as that of scene.file is. The middle of the picture is seen along -Z, its upper edge along +Y.");
+  v.field("rotation", c.rotation, RealRange{-360, 360}, "degrees",
+          "The map is turned about +Y, counter-clockwise as seen from above.");
 }
 
 inline constexpr RealRange kMoment{0, 1e9};
@@ -89,8 +96,10 @@ void describe(V& v, SceneConfig& c) {
                   "animations, skins and morph targets are ignored.");
   v.section("animation", c.animation,
             "The one animation that is played, in place of time. Skins and morph targets follow it.");
-  v.section("sky", c.sky,
-            "A sky of one colour. Without this key a built-in scene has its own sky, and a file has the default.");
+  v.section(
+      "sky", c.sky,
+      "A sky of one colour, or of an environment map. Without this key a built-in scene has its own sky, and a file "
+      "has the default.");
   v.choice("placement", c.placement,
            "With engine.transport mpi each rank has the whole acceleration structure, or with partitioned that of its "
            "share of the meshes; packets then start where their shape is, and bring it along.");

@@ -11,9 +11,9 @@ namespace {
 
 // Places in the simulated memory, beyond shapes and spilled entries.
 constexpr std::uint64_t kRecords = std::uint64_t{1} << 50, kStates = std::uint64_t{1} << 51,
-                        kFilm = std::uint64_t{1} << 52;
+                        kFilm = std::uint64_t{1} << 52, kSky = kFilm + (std::uint64_t{1} << 51);
 constexpr std::uint32_t kPixelBytes = 16;  // four floats
-static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kMemoryEnd);
+static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky && kSky < kMemoryEnd);
 
 MemoryConfig of_shared_cache(MemoryConfig memory) {
   memory.l1_kib = 0;
@@ -32,8 +32,9 @@ RayData::RayData(const Settings& settings, const Workload& workload, const std::
 }
 
 bool RayData::wanted(const MemoryConfig& memory) {
-  return memory.ray_records == MemoryConfig::RayRecords::kMaster ||
-         memory.path_state == MemoryConfig::ShadingData::kMemory || memory.film == MemoryConfig::ShadingData::kMemory;
+  constexpr auto kInMemory = MemoryConfig::ShadingData::kMemory;
+  return memory.ray_records == MemoryConfig::RayRecords::kMaster || memory.path_state == kInMemory ||
+         memory.film == kInMemory || memory.sky_map == kInMemory;
 }
 
 // ---- places
@@ -87,16 +88,26 @@ void RayData::completed(ResourceId resource, std::span<const std::uint32_t> slot
 
 // ---- paths
 
-bool RayData::fetch_state(const RayResult& ray, Cycle now) {
+bool RayData::fetch_for_shading(const RayResult& ray, Cycle now) {
   const std::uint32_t bytes = keeps_states() ? workload_.path_memory(ray.tag).state_bytes : 0;
-  if (bytes == 0) return false;
+  sky_reads_.clear();
+  if (keeps_sky()) workload_.sky_reads(ray, sky_reads_);
+  const std::size_t reads = sky_reads_.size() + (bytes > 0 ? 1 : 0);
+  if (reads == 0) return false;
   const std::uint32_t index = begin();
-  waiting_[index].kind = Kind::kState;
-  waiting_[index].missing = 1;
+  waiting_[index].kind = Kind::kShading;
+  waiting_[index].missing = reads;
   waiting_[index].ray = ray;
-  const ShapeSpan span = state_at(ray.tag.path, bytes);
-  port_of(span).request(span, index, now);
-  bytes_.states_read += span.bytes;
+  if (bytes > 0) {
+    const ShapeSpan span = state_at(ray.tag.path, bytes);
+    port_of(span).request(span, index, now);
+    bytes_.states_read += span.bytes;
+  }
+  for (const SkyRead& read : sky_reads_) {
+    const ShapeSpan span{kSky + read.offset, read.bytes};
+    port_of(span).request(span, index, now);
+    bytes_.sky_read += span.bytes;
+  }
   return true;
 }
 
@@ -149,7 +160,7 @@ void RayData::take(Cycle now, HitBatch& rays, std::vector<Group>& groups) {
       if (waiting.kind == Kind::kRecord) {
         groups.push_back(std::move(waiting.group));
         waiting.group = {};
-      } else if (waiting.kind == Kind::kState) {
+      } else if (waiting.kind == Kind::kShading) {
         rays.push_back(waiting.ray);
       } else {
         const ShapeSpan span = pixel_at(waiting.pixel);

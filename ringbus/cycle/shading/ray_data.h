@@ -21,6 +21,9 @@ namespace carousel::ringbus::cycle {
 ///   from there before it is loaded into the slot; when the ray is complete, it is written back.
 /// - `memory.path_state: memory`: the state of a path is written for each ray that is made for it, and read when one
 ///   has come back, before that joins the queue of a worker.
+/// - `memory.sky_map: memory`: what shading a ray reads of the map of the sky is read when the ray has come back,
+/// before
+///   it joins the queue of a worker.
 /// - `memory.film: memory`: when the last ray of a path has been shaded, its pixel is read, and written when it has
 ///   come.
 ///
@@ -46,6 +49,7 @@ class RayData {
 
   bool keeps_records() const { return memory_.ray_records == MemoryConfig::RayRecords::kMaster; }
   bool keeps_states() const { return memory_.path_state == MemoryConfig::ShadingData::kMemory; }
+  bool keeps_sky() const { return memory_.sky_map == MemoryConfig::ShadingData::kMemory; }
 
   /// The resource and the slot of a record.
   using Place = std::pair<ResourceId, std::uint32_t>;
@@ -53,8 +57,9 @@ class RayData {
   void fetch(Group&& group, std::span<const Place> places, Cycle now);
   /// Rays that were in these slots are complete.
   void completed(ResourceId resource, std::span<const std::uint32_t> slots, Cycle now);
-  /// Reads the state of a complete ray's path; the ray comes back by take(). Returns false if it need not wait.
-  bool fetch_state(const RayResult& ray, Cycle now);
+  /// Reads what shading a complete ray needs: the state of its path, and parts of the sky. The ray comes back by
+  /// take(). Returns false if it need not wait.
+  bool fetch_for_shading(const RayResult& ray, Cycle now);
   /// New rays have been made.
   void made(std::span<const RayRequest> rays, Cycle now);
   /// To be called before the workload shades rays, after which it may forget their paths.
@@ -64,19 +69,19 @@ class RayData {
 
   /// The time of the next answer.
   Cycle next() const;
-  /// Takes the answers: appends rays whose state has come to `rays`, and groups whose records have come to `groups`.
+  /// Takes the answers: appends rays whose data has come to `rays`, and groups whose records have come to `groups`.
   void take(Cycle now, HitBatch& rays, std::vector<Group>& groups);
 
   const RayDataBytes& bytes() const { return bytes_; }
   std::uint64_t lines() const;  ///< asked for
 
  private:
-  enum class Kind : std::uint32_t { kRecord, kState, kFilm };
+  enum class Kind : std::uint32_t { kRecord, kShading, kFilm };
   struct Waiting {
     Kind kind = Kind::kRecord;
     std::size_t missing = 0;  // reads
     Group group;              // kRecord
-    RayResult ray;            // kState
+    RayResult ray;            // kShading
     std::uint32_t pixel = 0;  // kFilm
   };
 
@@ -96,6 +101,7 @@ class RayData {
   std::vector<std::uint32_t> free_;                   // unused places in waiting_
   std::vector<std::uint32_t> in_flight_;              // by path: rays that have not been shaded
   std::vector<std::optional<std::uint32_t>> pixels_;  // pixels of the rays that are being shaded
+  std::vector<SkyRead> sky_reads_;                    // scratch
   RayDataBytes bytes_;
 };
 

@@ -76,7 +76,7 @@ void ShadingAgent::take_completed(Cycle now) {
     if (data_) [[unlikely]]
       data_->completed(ResourceId(resource), done.slots, now);
     for (const RayResult& ray : done.rays)
-      if (!data_ || !data_->fetch_state(ray, now)) workers_.add(ray, now);
+      if (!data_ || !data_->fetch_for_shading(ray, now)) workers_.add(ray, now);
   });
 }
 

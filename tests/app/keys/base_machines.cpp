@@ -6,6 +6,7 @@
 
 #include "tests/scene/gltf/gltf_builder.h"
 #include "tests/scene/gltf/pose/moving_models.h"
+#include "tests/support/hdr_file.h"
 
 namespace carousel {
 
@@ -67,6 +68,7 @@ std::string rays_to_edges(int points) {
 void write_scenes_and_rays(const Program& program) {
   program.write("layers.gltf", layers(0.9));
   program.write("other.gltf", layers(0.2));
+  program.write("map.hdr", hdr_file(8, 4, [](int x, int y) { return Vec3{float(x), float(y), 1}; }));
   program.write("copies.csv", rays_to_edges(60));
   program.write("fewer.csv", rays_to_edges(30));
 }

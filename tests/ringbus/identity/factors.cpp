@@ -175,6 +175,7 @@ std::vector<Factor> memory_and_shading() {
       {"memory.ray_records", all<MemoryConfig::RayRecords>(), timed},
       {"memory.path_state", all<MemoryConfig::ShadingData>(), timed},
       {"memory.film", all<MemoryConfig::ShadingData>(), timed},
+      {"memory.sky_map", all<MemoryConfig::ShadingData>(), timed},
       {"memory.strip_end", all<MemoryConfig::StripEnd>(), timed},
       {"memory.strip_ahead", {"0", "2"}, {"memory.strip_end=flag"}},
       {"bvh.leaves", all<BvhConfig::Leaves>(), timed},

@@ -137,6 +137,10 @@ inline scene::Scene scene_that_calls_for(Effect effect) {
       scene.lights.push_back(light);
       return scene;
     }
+    case Effect::kEnvironmentMap:
+      scene = box_on_floor(m);
+      scene.sky.map = {"map", 2, 2, {Vec3{1, 2, 3}, Vec3{4, 0, 1}, Vec3{0.5f}, Vec3{0}}, 0.1f};
+      return scene;
     default:
       break;
   }

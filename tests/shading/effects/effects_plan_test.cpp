@@ -186,11 +186,27 @@ TEST(EffectsWork, FollowsFromTheOperationsOfTheMaterial) {
   EXPECT_EQ(least[first], (ShadeWork{0, 0}));
   EXPECT_EQ(least[first + 1], (ShadeWork{1, 214}));
   EXPECT_EQ(least[first + 2], (ShadeWork{0, 0}));
-  // With `all` the code evaluates both layers everywhere, and checks the eleven other effects that have products.
+  // With `all` the code evaluates both layers everywhere, and checks the twelve other effects that have products.
   const std::vector<ShadeWork> most = extra_work(scene, plan_effects(scene, small_image(Choice::kAll)));
-  EXPECT_EQ(most[first], (ShadeWork{0, 214 + 242 + 11}));
-  EXPECT_EQ(most[first + 1], (ShadeWork{1, 214 + 242 + 11}));
-  EXPECT_EQ(most[first + 2], (ShadeWork{0, 13}));
+  EXPECT_EQ(most[first], (ShadeWork{0, 214 + 242 + 12}));
+  EXPECT_EQ(most[first + 1], (ShadeWork{1, 214 + 242 + 12}));
+  EXPECT_EQ(most[first + 2], (ShadeWork{0, 14}));
+  EXPECT_EQ(extra_work_of_misses(plan_effects(scene, small_image())), (ShadeWork{0, 0}));
+  EXPECT_EQ(extra_work_of_misses(plan_effects(scene, small_image(Choice::kAll))), (ShadeWork{0, 1}));
+
+  // Light is drawn from a map at each lit surface, and rays that leave the scene look at it.
+  scene.sky.map = {"map", 1, 1, {Vec3{1}}, 0};
+  for (const Choice choice : {Choice::kAuto, Choice::kAll}) {
+    const EffectsPlan plan = plan_effects(scene, small_image(choice));
+    const std::vector<ShadeWork> lit = extra_work(scene, plan);
+    EXPECT_EQ(lit[first], (choice == Choice::kAuto ? ShadeWork{1, 104} : ShadeWork{1, 104 + 214 + 242 + 11}));
+    EXPECT_EQ(lit[first + 1].lookups, 2u);
+    EXPECT_EQ(lit[first + 2].lookups, 0u);
+    EXPECT_EQ(extra_work_of_misses(plan), (ShadeWork{1, 77}));
+  }
+  const EffectsPlan shadowless = plan_effects(scene, small_image(Choice::kList, {"environment_map"}));
+  EXPECT_EQ(extra_work(scene, shadowless)[first], (ShadeWork{0, 0}));
+  EXPECT_EQ(extra_work_of_misses(shadowless), (ShadeWork{1, 77}));
 }
 
 TEST(EffectsPlan, PicturesOfEverythingDoNotDependOnWorkersOrOrder) {

@@ -3,6 +3,7 @@ from .clock import ceil_div
 from .memory import ShapePort
 
 RECORDS, STATES, FILM = 1 << 50, 1 << 51, 1 << 52
+SKY = FILM + (1 << 51)
 RECORD, PIXEL = 64, 16
 
 
@@ -11,6 +12,13 @@ class Records:
 
     def __init__(self, issuer, rays):
         self.issuer, self.rays, self.missing = issuer, rays, len(rays)
+
+
+class Shading:
+    """A completed ray whose path state, or parts of the sky, are on their way."""
+
+    def __init__(self, ray, missing):
+        self.ray, self.missing = ray, missing
 
 
 class PathStates:
@@ -44,13 +52,15 @@ class RayData:
         m = config["memory"]
         self.records = m.get("ray_records") == "master"
         self.state_bytes = facts["state_bytes"] if m.get("path_state") == "memory" else 0
+        sky = m.get("sky_map") == "memory"
+        self.sky = {tuple(fact["name"]): fact.get("sky", []) for fact in facts["rays"] if sky}  # reads by ray
         self.film, self.pixels = m.get("film") == "memory", facts["pixels"]
         self.shared, self.line = m["shared_by"], m["line_bytes"]
         self.slots = config["rays"]["slots_per_resource"]
         self.paths = PathStates()
         caches = ceil_div(config["topology"]["resources"], self.shared)
         own = dict(config, memory=dict(m, l1_kib=0))
-        used = self.records or self.film or m.get("path_state") == "memory"
+        used = self.records or self.film or sky or m.get("path_state") == "memory"
         self.ports = [ShapePort(own, clock) for _ in range(caches if used else 0)]
 
     def record_of(self, ray):
@@ -74,12 +84,16 @@ class RayData:
         """Those that are to be shaded now."""
         for ray in rays if self.records else ():
             self.ports[ray.owner // self.shared].request(self.record_of(ray), None, now)
-        if not self.state_bytes:
-            return rays
+        ready = []
         for ray in rays:
-            span = self.state_of(ray)
-            self.port(span).request(span, ray, now)
-        return []
+            spans = [self.state_of(ray)] if self.state_bytes else []
+            spans += [(SKY + offset, size) for offset, size in self.sky.get(ray.name, [])]
+            waiting = Shading(ray, len(spans))
+            for span in spans:
+                self.port(span).request(span, waiting, now)
+            if not spans:
+                ready.append(ray)
+        return ready
 
     def made(self, rays, now):
         for ray in rays:
@@ -100,12 +114,12 @@ class RayData:
         for port in self.ports:
             while port.answers.ready(now):
                 what = port.answers.take()
-                if isinstance(what, Records):
-                    what.missing -= 1
-                    if what.missing == 0:
-                        groups.append(what)
-                elif isinstance(what, tuple):
+                if isinstance(what, tuple):
                     port.request(what, None, now)
-                else:
-                    rays.append(what)
+                    continue
+                what.missing -= 1
+                if what.missing == 0 and isinstance(what, Records):
+                    groups.append(what)
+                elif what.missing == 0:
+                    rays.append(what.ray)
         return rays, groups

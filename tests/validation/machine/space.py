@@ -1,6 +1,9 @@
 """Random machines: configurations of 1 to 4 resources and some 200 rays."""
 import math
+import pathlib
 import random
+
+SKY_MAP = pathlib.Path(__file__).resolve().parents[3] / "configs/maps/evening.hdr"
 
 
 def draw(seed, index):
@@ -129,4 +132,7 @@ def draw(seed, index):
         config["collections"].update(key="block", block_bytes=pick([64, 300, 512, 1024, 65536]))
         config["testers"]["simd"]["lanes"] = 1
         memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], 64)
+    if r.random() < 0.25:
+        scene["sky"] = {"file": str(SKY_MAP), "rotation": pick([0, 75])}
+        memory["sky_map"] = pick(["free", "memory", "memory"])
     return config
