@@ -67,8 +67,9 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   out.link_mm = c.area.link_mm ? static_cast<double>(*c.area.link_mm) : std::sqrt(parts.mm2() / n);
   const std::int64_t caches = (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by;
   store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
-  store(AreaPart::kLinkQueues, static_cast<double>(topology.wires().size()) *
-                                   static_cast<double>(c.topology.link.depth) * place_bytes(c) / kKiB);
+  double places = 0;
+  for (const ringbus::Topology::Wire& wire : topology.wires()) places += static_cast<double>(wire.depth);
+  store(AreaPart::kLinkQueues, places * place_bytes(c) / kKiB);
   const TestersConfig::Distributor& distributor = c.testers.distributor;
   if (has_distributor(c))
     store(AreaPart::kLinkQueues, static_cast<double>(distributor.testers) *

@@ -32,7 +32,7 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   out.offered = ratio(result.offered, resource_cycles);
   out.accepted = ratio(result.accepted, resource_cycles);
   out.routers_mean = result.routers_mean();
-  out.zero_load_latency = result.zero_load_latency(config.workload.traffic, config.topology.link);
+  out.zero_load_latency = result.zero_load_latency(config.workload.traffic);
   out.latency = report::latency_of(result.latency);
   const std::uint64_t window = result.window_end - result.window_begin;
   std::uint64_t busiest = 0;

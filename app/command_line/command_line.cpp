@@ -106,6 +106,9 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       "check", "Validate a configuration; print it with all defaults, its memory and whether it can deadlock");
   add_config_options(*check, arguments.check);
   add_strict_option(*check, arguments.check);
+  check->add_flag("--graph", arguments.check.graph,
+                  "Print the network as a graph, topology with nodes and links as YAML, and nothing else (default: all "
+                  "keys)");
   CLI::App* stress =
       program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
   add_config_options(*stress, arguments.stress, "the queues are tested by themselves");

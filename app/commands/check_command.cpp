@@ -5,6 +5,7 @@
 #include <string>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 #include <spdlog/spdlog.h>
 
 #include "app/host/exit_status.h"
@@ -12,10 +13,13 @@
 #include "app/host/output.h"
 #include "app/run/memory_need.h"
 #include "app/trace/memory_csv.h"
+#include "core/config/load/load.h"
 #include "core/config/write.h"
 #include "report/csv/ray_csv.h"
 #include "report/text/number_text.h"
 #include "ringbus/protocol/deadlock.h"
+#include "ringbus/topology/drawn_shape.h"
+#include "ringbus/topology/graph_facts.h"
 
 namespace carousel::app {
 
@@ -34,12 +38,71 @@ std::string ray_list_text(const Prepared& p) {
   return fmt::format("rays: {} of {}\n", report::read_rays_csv(path).size(), path.string());
 }
 
+using Json = nlohmann::ordered_json;
+
+/// Without the keys that have their defaults.
+Json short_form(const Json& item, const Json& defaults) {
+  Json out = Json::object();
+  for (const auto& [key, value] : item.items())
+    if (!defaults.contains(key) || defaults[key] != value) out[key] = value;
+  return out;
+}
+
+void add_list(std::string& out, const char* key, const Json& items, const Json& defaults) {
+  out += fmt::format("  {}:{}\n", key, items.empty() ? " []" : "");
+  for (const Json& item : items) out += "    - " + yaml_line(short_form(item, defaults)) + "\n";
+}
+
+/// The section `topology` of a network as a graph, whatever its shape: YAML that can stand in its place in a file.
+/// Throws a ConfigError for a shape that a graph cannot say.
+std::string graph_yaml(const TopologyConfig& config, const KeyPositions& positions) {
+  const ringbus::DrawnShape drawn = ringbus::draw_shape(config);
+  if (!drawn.possible)
+    throw ConfigError({{positions.find("topology.shape"), "topology.shape",
+                        fmt::format("a graph cannot say {} yet: {}", enum_name(config.shape), drawn.difference)}});
+  Config whole, plain;
+  whole.topology = drawn.config;
+  plain.topology.nodes.emplace_back();
+  plain.topology.links.emplace_back();
+  const Json topology = config_json(whole)["topology"], defaults = config_json(plain)["topology"];
+  std::string out;
+  if (!drawn.same) out += fmt::format("# Not the same machine: {}.\n", drawn.difference);
+  out += fmt::format("topology:\n  shape: graph\n  visit: {}\n", yaml_line(topology["visit"]));
+  for (const char* key : {"flow", "overrides"})
+    if (topology[key] != defaults[key]) out += fmt::format("  {}: {}\n", key, yaml_line(topology[key]));
+  if (const Json link = short_form(topology["link"], defaults["link"]); !link.empty())
+    out += fmt::format("  link: {}\n", yaml_line(link));
+  add_list(out, "nodes", topology["nodes"], defaults["nodes"][0]);
+  add_list(out, "links", topology["links"], defaults["links"][0]);
+  return out;
+}
+
+/// The ways of a graph under uniform traffic.
+std::string graph_facts_text(const TopologyConfig& config) {
+  const ringbus::GraphFacts facts = ringbus::graph_facts(config);
+  std::string out = fmt::format("graph: {} resources, {} routers, {} links of one way\n", facts.resources,
+                                facts.routers, facts.links);
+  if (facts.links == 0) return out;
+  out += fmt::format("ways: {:.4f} cycles and {:.4f} nodes on average, {} cycles at most, from {} to {}\n",
+                     facts.mean_cycles, facts.mean_nodes, facts.longest_cycles, facts.longest_from, facts.longest_to);
+  return out +
+         fmt::format("busiest: {}, on {} of {} ways; a uniform load fills it at {:.4f} flits a resource and cycle\n",
+                     facts.busiest, facts.busiest_pairs, facts.resources * facts.resources, facts.bound);
+}
+
+int print_graph(const CheckArguments& arguments) {
+  const LocatedConfig located = load_config(read_config_file(arguments.config), arguments.sets, {.force = true});
+  print_result(graph_yaml(located.config.topology, located.positions));
+  return kDone;
+}
+
 }  // namespace
 
 int check_command(const CheckArguments& arguments) {
+  if (arguments.graph) return print_graph(arguments);
   // A topology that can deadlock gets its verdict here instead of a plain refusal.
   const Prepared p = prepare(arguments, {.force = true, .ranks = true}, false);
-  const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config().topology);
+  const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config());
   std::string text;
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
     text = "scene: none, synthetic traffic\n";
@@ -56,11 +119,13 @@ int check_command(const CheckArguments& arguments) {
   }
   if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty())
     text += fmt::format("ignored: {}\n", ignored_text(ignored));
+  if (p.config().topology.shape == TopologyShape::kGraph) text += graph_facts_text(p.config().topology);
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
   print_result(resolved_yaml(p.absolute_config()) + "\n" + commented(text));
   if (!verdict.can_deadlock) return kDone;
-  spdlog::error("{}: topology.flow: the links of this machine can fill up and stop, and run refuses it without --force",
-                arguments.config);
+  spdlog::error("{}: {}: the links of this machine can fill up and stop, and run refuses it without --force",
+                arguments.config,
+                p.config().topology.shape == TopologyShape::kGraph ? "topology.links" : "topology.flow");
   return kUsage;
 }
 

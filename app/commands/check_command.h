@@ -4,10 +4,12 @@
 
 namespace carousel::app {
 
-using CheckArguments = ConfigArguments;
+struct CheckArguments : ConfigArguments {
+  bool graph = false;  ///< print the network as a graph, and nothing else
+};
 
 /// `carousel check`: prints the resolved configuration, and as YAML comments the memory it needs and whether
-/// it can deadlock, and the keys that the machine ignores. Returns the exit status.
+/// it can deadlock, and the keys that the machine ignores; or the network as a graph. Returns the exit status.
 int check_command(const CheckArguments& arguments);
 
 }  // namespace carousel::app

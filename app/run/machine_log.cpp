@@ -19,11 +19,12 @@ void log_machine(const Prepared& prepared) {
   spdlog::debug("machine: {} resources, shape {}, {} links", topology.resources(), enum_name(config.topology.shape),
                 topology.wires().size());
   if (topology.has_packets()) {
-    const ringbus::FlowRules flow(config.topology.flow, topology.direct());
+    const ringbus::FlowRules flow(config.topology.flow, topology.room_for_all());
     const bool stays = config.collections.home == Home::kLocal || topology.resources() == 1;
     spdlog::debug("packets: {}; each resource may have {} under way{}",
                   stays                   ? "they are tested where they are issued"
                   : topology.direct()     ? "they go straight to where their rays are"
+                  : topology.routed()     ? "they take the shortest ways"
                   : topology.visits_all() ? "they visit every resource"
                                           : "they pass resources without their rays",
                   topology.packets_in_flight(),

@@ -187,6 +187,15 @@ void require_room(const Prepared& p, bool keep_hits) {
   require_fit(need, usable_memory_bytes(), p.located.positions);
 }
 
+/// Refuses a graph whose links can fill up and stop. Of other shapes `topology.flow` alone says whether they can.
+void require_flow(const Prepared& p) {
+  if (p.config().topology.shape != TopologyShape::kGraph) return;
+  const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config());
+  if (verdict.can_deadlock)
+    throw ConfigError({{p.located.positions.find("topology.links"), "topology.links",
+                        fmt::format("{}; expected links without such a circle, or --force", verdict.rule)}});
+}
+
 /// Refuses a machine of several ranks where a command does not join them.
 void require_one_rank(const Prepared& p) {
   if (p.config().engine.transport != EngineTransport::kLocal)
@@ -291,6 +300,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   Prepared p;
   p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
   if (!options.ranks) require_one_rank(p);
+  if (!options.force) require_flow(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   const bool is_fitted = p.config().area.budget_mm2.has_value();
   const auto call = [&] {

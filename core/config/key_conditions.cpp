@@ -52,6 +52,8 @@ constexpr Row kRows[] = {
     {"topology.link.latency_cycles", kCycle},
     {"topology.link.bytes_per_cycle", kCycle},
     {"topology.overrides", kCycle},
+    {"topology.nodes", kGraph},
+    {"topology.links", kGraph},
     {"rays.reads_per_cycle", kCycle},
     {"rays.banks", kCycle},
     {"rays.query", kList},

@@ -111,6 +111,8 @@ inline constexpr Condition kMultiRing{
 inline constexpr Condition kGroups{
     [](const C& c, const S&) { return c.topology.shape == TopologyShape::kHierarchical && c.topology.resources > 1; },
     "the topology is not hierarchical"};
+inline constexpr Condition kGraph{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kGraph; },
+                                  "the topology is not drawn"};
 inline constexpr Condition kCentral{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kCentral; },
                                     "the topology is not central"};
 inline constexpr Condition kDistributor{[](const C& c, const S&) { return has_distributor(c); },

@@ -125,6 +125,21 @@ void Reader::vector(std::string_view key, Vec3& value, RealRange range, const ch
   }
 }
 
+void Reader::on_field(std::string_view key, GridSize& value, IntRange range, const char* unit, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kSeq || visit.node->items.size() != 2)
+    return wrong(*visit.node, "a list of columns and rows");
+  GridSize read;
+  std::int64_t* sides[] = {&read.columns, &read.rows};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto number = integer_of(visit.node->items[i], range);
+    if (!number) return wrong(visit.node->items[i], expected_integer(range, unit));
+    *sides[i] = *number;
+  }
+  value = read;
+}
+
 void Reader::on_field(std::string_view key, bool& value, const char*, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;
@@ -202,21 +217,9 @@ void Reader::on_section_or_number(std::string_view key, TesterUnits& value, cons
     wrong(*visit.node, "a map or " + expected_integer(range, "units"));
 }
 
-void Reader::list(std::string_view key, std::vector<ResourceOverride>& value, const char*) {
-  const Visit visit(*this, key);
-  if (!visit.node) return;
-  if (visit.node->kind != Node::Kind::kSeq) return wrong(*visit.node, "a list");
-  value.clear();
-  for (std::size_t i = 0; i < visit.node->items.size(); ++i) {
-    ResourceOverride item;
-    item.testers = base_testers_;
-    path_.push_back(std::to_string(i));
-    if (visit.node->items[i].kind == Node::Kind::kMap && !visit.node->items[i].find("resource"))
-      issues_.push_back({visit.node->items[i].position, path(), "expected the key 'resource'"});
-    read(visit.node->items[i], item);
-    path_.pop_back();
-    value.push_back(item);
-  }
+void Reader::require(const Node& node, std::string_view key) {
+  if (!key.empty() && node.kind == Node::Kind::kMap && !node.find(key))
+    issues_.push_back({node.position, path(), fmt::format("expected the key '{}'", key)});
 }
 
 void Reader::effects(std::string_view key, ShadingConfig::Effects& value, const char*) {

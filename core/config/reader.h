@@ -3,6 +3,7 @@
 #include <map>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "core/config/fields/field.h"
@@ -35,6 +36,7 @@ class Reader : public RowVisitor<Reader> {
   void on_field(std::string_view key, float& value, RealRange range, const char* unit, const char*);
   void on_field(std::string_view key, double& value, RealRange range, const char* unit, const char*);
   void on_field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*);
+  void on_field(std::string_view key, GridSize& value, IntRange range, const char* unit, const char*);
   void on_field(std::string_view key, bool& value, const char*, const char*);
   void on_field(std::string_view key, std::string& value, const char*, const char*);
   void on_field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,
@@ -70,7 +72,21 @@ class Reader : public RowVisitor<Reader> {
   }
 
   void on_section_or_number(std::string_view key, TesterUnits& value, const char*);
-  void list(std::string_view key, std::vector<ResourceOverride>& value, const char*);
+  template <class T>
+  void list(std::string_view key, std::vector<T>& value, const char*) {
+    const Visit visit(*this, key);
+    if (!visit.node) return;
+    if (visit.node->kind != Node::Kind::kSeq) return wrong(*visit.node, "a list");
+    value.clear();
+    for (const Node& item : visit.node->items) {
+      path_.push_back(std::to_string(value.size()));
+      T& made = value.emplace_back();
+      if constexpr (std::is_same_v<T, ResourceOverride>) made.testers = base_testers_;
+      require(item, T::kRequired);
+      read(item, made);
+      path_.pop_back();
+    }
+  }
   template <class E>
   void choices(std::string_view key, std::vector<E>& value, const char*) {
     const Visit visit(*this, key);
@@ -115,6 +131,8 @@ class Reader : public RowVisitor<Reader> {
   void vector(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* expected);
   std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
   void report_unknown(const Scope& frame);
+  /// A map has the key, unless that is empty.
+  void require(const Node& node, std::string_view key);
   void wrong(const Node& node, const std::string& expected, const std::string& hint = "");
   std::string path() const;
 

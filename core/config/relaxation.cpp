@@ -66,6 +66,7 @@ class RelaxedRows : public config::RowWalk<RelaxedRows<Found>> {
   }
   void apply(const std::string& path, std::optional<std::int64_t>& value, const char* part, Better how,
              Relaxed relaxed) {
+    if (this->in_override() && !value) return;  // it is as in the whole machine, which is relaxed there
     std::int64_t known = value.value_or(automatic_);
     apply(path, known, part, how, relaxed);
     if (known != value.value_or(automatic_)) value = known;

@@ -15,8 +15,8 @@
 namespace carousel::config {
 
 /// The base of a visitor V that asks for what rows say beyond their values: V::rest(path, value) returns what such a
-/// row goes on with, for the value of a key and its path. The testers of resources that differ have the paths of those
-/// of the whole machine; in_override() tells them apart.
+/// row goes on with, for the value of a key and its path. What differs at some places, in an item of a list, has the
+/// path of what holds for the whole machine (T::kRowPath); in_override() tells them apart.
 template <class V>
 class RowWalk {
  public:
@@ -49,7 +49,7 @@ class RowWalk {
   }
   template <class T>
   void list(std::string_view, std::vector<T>& value, const char*) {
-    const std::string before = std::exchange(path_, "");
+    const std::string before = std::exchange(path_, T::kRowPath);
     in_override_ = true;
     for (T& item : value) describe(self(), item);
     in_override_ = false;

@@ -53,6 +53,9 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     out["default"] = {shortest(value.x), shortest(value.y), shortest(value.z)};
     put(key, std::move(out), unit, meaning);
   }
+  void on_field(std::string_view key, GridSize&, IntRange range, const char* unit, const char* meaning) {
+    put(key, {{"type", "array"}, {"items", integer(range)}, {"minItems", 2}, {"maxItems", 2}}, unit, meaning);
+  }
   void on_field(std::string_view key, bool& value, const char* unit, const char* meaning) {
     put(key, {{"type", "boolean"}, {"default", value}}, unit, meaning);
   }
@@ -96,7 +99,7 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
   template <class T>
   void list(std::string_view key, std::vector<T>&, const char* meaning) {
     Json item = object(T{}, "");
-    item["required"] = {"resource"};
+    if (!T::kRequired.empty()) item["required"] = Json::array({std::string(T::kRequired)});
     put(key, {{"type", "array"}, {"items", std::move(item)}, {"default", Json::array()}}, "", meaning);
   }
   template <class E>

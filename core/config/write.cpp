@@ -40,6 +40,9 @@ class JsonWriter : public RowVisitor<JsonWriter> {
   void on_field(std::string_view key, Vec3& value, RealRange, const char*, const char*) {
     put(key, {shortest(value.x), shortest(value.y), shortest(value.z)});
   }
+  void on_field(std::string_view key, GridSize& value, IntRange, const char*, const char*) {
+    if (value.any()) put(key, {value.columns, value.rows});
+  }
   void on_field(std::string_view key, bool& value, const char*, const char*) { put(key, value); }
   void on_field(std::string_view key, std::string& value, const char*, const char*) {
     if (!value.empty()) put(key, value);
@@ -160,6 +163,10 @@ void yaml_block(const Json& object, const std::string& indent, std::string& out)
 
 Json config_json(const Config& config) {
   return config::JsonWriter::object(config);
+}
+
+std::string yaml_line(const Json& value) {
+  return config::yaml_flow(value);
 }
 
 std::string resolved_yaml(const Config& config) {

@@ -15,6 +15,9 @@ nlohmann::ordered_json config_json(const Config& config);
 /// The resolved configuration as YAML text: every key with its value, without optional keys that are absent.
 std::string resolved_yaml(const Config& config);
 
+/// A value as YAML in one line.
+std::string yaml_line(const nlohmann::ordered_json& value);
+
 /// The double whose shortest decimal form is that of `value`: how floats are put into JSON.
 double shortest(float value);
 

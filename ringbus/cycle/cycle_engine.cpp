@@ -23,7 +23,6 @@ class CycleRun {
            const RunOptions& options)
       : config_(config),
         options_(options),
-        link_depth_(static_cast<std::size_t>(config.topology.link.depth)),
         machine_(config, accel, scene_size, workload, options.statistics,
                  {options.trace, most_samples(options.samples, series_counters(config.topology)), options.timeline,
                   options.ray, options.memory}) {
@@ -151,7 +150,7 @@ class CycleRun {
                          machine_.network().wire(c.links.size()).packets.bytes().sent});
       LinkStatistics s;
       s.packets = port.packets();
-      out.links.push_back({wire.from, wire.to, link_depth_, s, {}, port.faults()});
+      out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(wire.depth), s, {}, port.faults()});
     });
     if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->bytes();
     if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().counts();
@@ -224,7 +223,6 @@ class CycleRun {
 
   const Config& config_;
   const RunOptions& options_;
-  std::size_t link_depth_;
   SimulatedMachine machine_;
   ProgressLog log_;
   std::optional<ProgressSample> all_begun_;

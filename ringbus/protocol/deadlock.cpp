@@ -4,12 +4,19 @@
 
 #include "ringbus/resource/storage_rule.h"
 #include "ringbus/resource/traversal/make_traversal.h"
+#include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
   return Topology(config).verdict();
+}
+
+DeadlockVerdict deadlock_verdict(const Config& config) {
+  const bool traffic = config.workload.kind == WorkloadConfig::Kind::kTraffic;
+  if (traffic && config.topology.shape == TopologyShape::kGraph) return traffic_verdict(config.topology);
+  return deadlock_verdict(config.topology);
 }
 
 std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {

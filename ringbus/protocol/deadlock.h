@@ -11,6 +11,8 @@ namespace carousel::ringbus {
 
 /// Tells before a run whether the links of a machine can fill up and stop (docs/design.md, Deadlock and the end).
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
+/// The same for what runs on it: on a graph, synthetic traffic has dangers of its own.
+DeadlockVerdict deadlock_verdict(const Config& config);
 
 /// Ray IDs of collection storage a resource needs so that bounded storage (`when_full: reserve`) cannot block:
 /// twice the reserve that deepest-first draining uses, since new rays are admitted only above half free; one

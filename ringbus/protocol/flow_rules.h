@@ -14,7 +14,8 @@ namespace carousel::ringbus {
 /// engines.
 class FlowRules {
  public:
-  /// `direct`: packets are sent straight to their next stop, so no ring of queues can close and no rule is needed.
+  /// `direct`: packets are sent straight to their next stop, or all nodes have room for all packets, so no ring of full
+  /// queues can close and no rule is needed.
   FlowRules(Flow flow, bool direct) : flow_(flow), direct_(direct) {}
 
   /// Free places that the next queue must have when a packet is injected into it. The bubble rule leaves one for

@@ -17,7 +17,7 @@ TopologyPlan plan_bus(const TopologyConfig& config) {
     plan.wires.push_back({ResourceId(r), bus, 0, there});
     plan.wires.push_back({bus, ResourceId(r), 0, back});
   }
-  plan.direct = true;
+  plan.direct = plan.room_for_all = true;
   plan.hubs = {TopologyPlan::Hub::kBus};
   plan.packets_in_flight = packets_in_flight(config);
   plan.verdict =

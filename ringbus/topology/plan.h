@@ -26,12 +26,21 @@ struct TopologyPlan {
     ResourceId from, to;
     std::uint16_t direction = 0;
     std::int64_t latency_cycles = 1;
+    std::int64_t node_cycles = 0;      ///< that its first node takes before
+    std::int64_t depth = 0;            ///< packets; 0: as topology.link says, also below
+    std::int64_t bytes_per_cycle = 0;  ///< width
   };
 
   /// A node that is no resource.
   enum class Hub : std::uint8_t {
     kBus,     ///< one medium for all: it moves one packet at a time, straight to its next stop
     kBridge,  ///< joins the line of resources of its group (port 0) with the ring of bridges (port 1)
+    kRouter,  ///< passes packets on to the port that `exits` names
+  };
+  /// The way out of a node towards a resource.
+  struct Exit {
+    std::uint16_t port = 0;
+    bool through = false;  ///< the next node sends a packet on as soon as its head has come
   };
 
   /// The resources behind a bridge, from the first one on its line to the last.
@@ -46,6 +55,14 @@ struct TopologyPlan {
   /// Packets are sent straight to their next stop, without passing other resources. The round then only says in which
   /// order a packet visits them.
   bool direct = false;
+  /// Packets find their way from stop to stop by `exits`, by node and then resource. Stops are in the order of the one
+  /// round; with `topology.visit: owners` those that own none of the members are left out. Ports are counted in the
+  /// order of the nodes at the other ends of their links.
+  bool routed = false;
+  std::vector<Exit> exits;
+  /// Every node has egress places for all packets there are, so that no link waits for another.
+  bool room_for_all = false;
+  std::vector<std::uint32_t> hub_places;  ///< egress places of hubs for each port; 0, or empty: room for all packets
   std::vector<Hub> hubs;
   std::vector<Group> groups;  ///< one a bridge
   /// Packets of its own that a resource may have under way in each direction.

@@ -13,7 +13,7 @@ TopologyPlan plan_point_to_point(const TopologyConfig& config) {
   for (std::uint32_t from = 0; from < resources; ++from)
     for (std::uint32_t to = 0; to < resources; ++to)
       if (to != from) plan.wires.push_back({ResourceId(from), ResourceId(to), 0, config.link.latency_cycles});
-  plan.direct = true;
+  plan.direct = plan.room_for_all = true;
   plan.packets_in_flight = packets_in_flight(config);
   plan.verdict = config.flow == Flow::kNone
                      ? verdict_of_flow(config)

@@ -27,6 +27,7 @@ constexpr std::array kShapes{
     Shape{TopologyShape::kBus, plan_bus},
     Shape{TopologyShape::kCentral, plan_central},
     Shape{TopologyShape::kIndependent, plan_independent},
+    Shape{TopologyShape::kGraph, plan_graph},
 };
 
 }  // namespace
@@ -41,7 +42,13 @@ TopologyPlan plan_topology(const TopologyConfig& config) {
     plan.wires.clear();
     plan.hubs.clear();
     plan.groups.clear();
+    plan.routed = false;
+    plan.exits.clear();
     plan.verdict = {false, "one resource: packets are tested where they are issued, there are no links"};
+  }
+  for (TopologyPlan::Wire& wire : plan.wires) {
+    if (wire.depth == 0) wire.depth = config.link.depth;
+    if (wire.bytes_per_cycle == 0) wire.bytes_per_cycle = config.link.bytes_per_cycle;
   }
   return plan;
 }

@@ -18,5 +18,6 @@ TopologyPlan plan_point_to_point(const TopologyConfig& config);
 TopologyPlan plan_bus(const TopologyConfig& config);
 TopologyPlan plan_central(const TopologyConfig& config);
 TopologyPlan plan_independent(const TopologyConfig& config);
+TopologyPlan plan_graph(const TopologyConfig& config);
 
 }  // namespace carousel::ringbus

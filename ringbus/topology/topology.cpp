@@ -11,18 +11,21 @@ Topology::Topology(const TopologyConfig& config)
       properties_(properties_of(config.shape)),
       resources_(static_cast<std::uint32_t>(config.resources)),
       visit_all_(config.visit == Visit::kAll),
+      skips_ahead_(plan_.routed ? !visit_all_ : plan_.direct && (!visit_all_ || broadcasts())),
+      has_widths_(std::ranges::any_of(
+          plan_.wires, [&](const Wire& wire) { return wire.bytes_per_cycle != config.link.bytes_per_cycle; })),
       ports_(resources_ + plan_.hubs.size()) {
   for (const std::vector<ResourceId>& round : plan_.successors)
     successors_.insert(successors_.end(), round.begin(), round.end());
   for (std::uint32_t g = 0; g < plan_.groups.size(); ++g)
     group_of_.insert(group_of_.end(), plan_.groups[g].last.value - plan_.groups[g].first.value + 1, g);
   number_ports();
-  if (properties_.carries_traffic) number_positions();
+  if (properties_.carries_traffic && !plan_.routed) number_positions();
 }
 
 void Topology::number_ports() {
   const auto put = [this](std::vector<std::uint32_t>& ports, std::uint32_t wire) {
-    const std::size_t at = plan_.direct ? ports.size() : plan_.wires[wire].direction;
+    const std::size_t at = plan_.direct || plan_.routed ? ports.size() : plan_.wires[wire].direction;
     if (ports.size() <= at) ports.resize(at + 1);
     ports[at] = wire;
   };
@@ -30,6 +33,14 @@ void Topology::number_ports() {
     put(ports_[plan_.wires[i].from.value].out, i);
     put(ports_[plan_.wires[i].to.value].in, i);
   }
+  if (plan_.routed)
+    for (Ports& ports : ports_) {
+      std::ranges::sort(ports.in, {}, [&](std::uint32_t wire) { return plan_.wires[wire].from.value; });
+      std::ranges::sort(ports.out, {}, [&](std::uint32_t wire) { return plan_.wires[wire].to.value; });
+    }
+  out_port_of_.resize(plan_.wires.size());
+  for (const Ports& ports : ports_)
+    for (std::uint32_t port = 0; port < ports.out.size(); ++port) out_port_of_[ports.out[port]] = port;
   if (!plan_.direct || !plan_.hubs.empty()) return;
   ports_to_.resize(std::size_t{resources_} * resources_);
   for (std::uint32_t r = 0; r < resources_; ++r)
@@ -53,7 +64,14 @@ std::uint16_t Topology::links_between(std::size_t direction, ResourceId from, Re
   return static_cast<std::uint16_t>(ahead >= resources_ ? ahead - resources_ : ahead);
 }
 
+Topology::Route Topology::routed_way(ResourceId from, ResourceId to) const {
+  Route way;
+  for (ResourceId at = from; at != to; ++way.hops) at = plan_.wires[ports_[at.value].out[exit(at, to).port]].to;
+  return way;
+}
+
 Topology::Route Topology::route(ResourceId from, ResourceId to, std::uint32_t random) const {
+  if (plan_.routed) return routed_way(from, to);
   Route best{0, links_between(0, from, to)};
   std::uint32_t equal = 1;
   const auto directions = static_cast<std::uint16_t>(this->directions());

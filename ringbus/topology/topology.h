@@ -39,6 +39,8 @@ class Topology {
     std::vector<std::uint32_t> in, out;
   };
   const Ports& ports(ResourceId node) const { return ports_[node.value]; }
+  /// The port by which a link leaves its first node; `wire`: its index.
+  std::size_t out_port_of(std::size_t wire) const { return out_port_of_[wire]; }
   std::size_t resources() const { return resources_; }
   std::size_t directions() const { return plan_.successors.size(); }
   /// Nodes `resources()` and up.
@@ -47,6 +49,18 @@ class Topology {
   std::uint32_t group_of(ResourceId r) const { return group_of_[r.value]; }
 
   bool direct() const { return plan_.direct; }
+  /// Packets find their way from stop to stop by exit().
+  bool routed() const { return plan_.routed; }
+  /// The way out of a node to a resource that is another node; only where packets are routed.
+  TopologyPlan::Exit exit(ResourceId node, ResourceId stop) const {
+    return plan_.exits[node.value * std::size_t{resources_} + stop.value];
+  }
+  /// No link waits for another, and no rule has to keep them from filling up.
+  bool room_for_all() const { return plan_.room_for_all; }
+  /// Egress places of a hub for each port; 0: for all packets there are.
+  std::uint32_t hub_places(std::size_t hub) const { return plan_.hub_places.empty() ? 0 : plan_.hub_places[hub]; }
+  /// Links are of more than one width.
+  bool has_widths() const { return has_widths_; }
   /// All resources hear what one sends. A packet goes to all of them at once, and each that has rays of it answers.
   bool broadcasts() const { return !plan_.hubs.empty() && plan_.hubs.front() == Hub::kBus; }
   bool visits_all() const { return visit_all_; }
@@ -58,17 +72,18 @@ class Topology {
 
   /// Links that a packet crosses on its way round a ring; 0 when it need not travel.
   std::uint32_t hops(const Packet& packet) const;
-  /// The next stop of the packet at `here`, its owner at last. Where packets are sent directly and only owners are
-  /// visited, resources that own none of the members are left out.
+  /// The next stop of the packet at `here`, its owner at last. Where packets are sent directly or routed and only
+  /// owners are visited, resources that own none of the members are left out.
   ResourceId next(const Packet& packet, ResourceId here) const {
     const ResourceId* round = round_of(packet.direction);
     ResourceId at = round[here.value];
-    if (!plan_.direct || (visit_all_ && !broadcasts())) return at;
+    if (!skips_ahead_) return at;
     while (at != packet.owner && !wanted(packet, at)) at = round[at.value];
     return at;
   }
   /// The port by which the packet leaves the resource `here`.
   std::size_t out_port(const Packet& packet, ResourceId here) const {
+    if (plan_.routed) return exit(here, next(packet, here)).port;
     if (!plan_.direct) return packet.direction;
     return ports_to_.empty() ? 0 : out_port_to(here, next(packet, here));
   }
@@ -77,9 +92,10 @@ class Topology {
     return ports_to_[here.value * std::size_t{resources_} + to.value];
   }
   /// Resources that a packet sent from `here` passes before one that has work with it, or before it reaches a hub;
-  /// none where packets are sent directly.
+  /// none where packets are sent directly. Where they are routed it counts stops.
   std::uint16_t skip(const Packet& packet, ResourceId here) const {
-    return plan_.direct ? std::uint16_t{0} : skip_from(packet, round_of(packet.direction)[here.value]);
+    return plan_.direct || (plan_.routed && !visit_all_) ? std::uint16_t{0}
+                                                         : skip_from(packet, round_of(packet.direction)[here.value]);
   }
   /// As skip(), for a packet that enters a group from its bridge.
   std::uint16_t skip_from_entrance(const Packet& packet, std::uint32_t group) const {
@@ -122,16 +138,20 @@ class Topology {
   std::uint16_t links_between(std::size_t direction, ResourceId from, ResourceId to) const;
   void number_ports();
   void number_positions();
+  Route routed_way(ResourceId from, ResourceId to) const;
 
   TopologyPlan plan_;
   ShapeProperties properties_;
   std::uint32_t resources_;
   bool visit_all_;
-  std::vector<ResourceId> successors_;   // the plan's, direction after direction
-  std::vector<std::uint32_t> position_;  // likewise: links from resource 0; empty without traffic
-  std::vector<std::uint32_t> group_of_;  // by resource; empty without groups
-  std::vector<Ports> ports_;             // by node
-  std::vector<std::uint32_t> ports_to_;  // by resource, then destination; empty unless all pairs have links
+  bool skips_ahead_;  // next() leaves out resources without members
+  bool has_widths_;
+  std::vector<ResourceId> successors_;      // the plan's, direction after direction
+  std::vector<std::uint32_t> position_;     // likewise: links from resource 0; empty without traffic
+  std::vector<std::uint32_t> group_of_;     // by resource; empty without groups
+  std::vector<Ports> ports_;                // by node
+  std::vector<std::uint32_t> out_port_of_;  // by wire
+  std::vector<std::uint32_t> ports_to_;     // by resource, then destination; empty unless all pairs have links
 };
 
 }  // namespace carousel::ringbus

@@ -5,11 +5,25 @@
 
 namespace carousel::ringbus {
 
+namespace {
+
+/// The first resource with a link to or from a router; 0 if there is none.
+std::uint32_t beside(const Topology& topology, std::uint32_t router) {
+  std::uint32_t first = static_cast<std::uint32_t>(topology.resources());
+  const Topology::Ports& ports = topology.ports(ResourceId(router));
+  for (const std::uint32_t wire : ports.in) first = std::min(first, topology.wires()[wire].from.value);
+  for (const std::uint32_t wire : ports.out) first = std::min(first, topology.wires()[wire].to.value);
+  return first < topology.resources() ? first : 0;
+}
+
+}  // namespace
+
 double wire_length(const Topology& topology, const Topology::Wire& wire) {
   const auto resources = static_cast<std::uint32_t>(topology.resources());
   if (topology.broadcasts()) return wire.to.value >= resources ? static_cast<double>(resources) : 0.0;
   const auto place = [&](std::uint32_t node) {
-    return node < resources ? node : topology.groups()[node - resources].first.value;
+    if (node < resources) return node;
+    return topology.routed() ? beside(topology, node) : topology.groups()[node - resources].first.value;
   };
   const std::uint32_t from = place(wire.from.value), to = place(wire.to.value);
   const std::uint32_t apart = from > to ? from - to : to - from;

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <vector>
 
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
+#include "core/config/fields/graph.h"
 #include "core/config/fields/queue_kind.h"
 #include "core/config/fields/testers.h"
 
@@ -18,7 +20,8 @@ enum class TopologyShape {
   kPointToPoint,
   kBus,
   kCentral,
-  kIndependent
+  kIndependent,
+  kGraph
 };
 template <>
 inline constexpr auto kEnumNames<TopologyShape> = [] {
@@ -30,14 +33,15 @@ inline constexpr auto kEnumNames<TopologyShape> = [] {
                                {kPointToPoint, "point_to_point"},
                                {kBus, "bus"},
                                {kCentral, "central"},
-                               {kIndependent, "independent"}});
+                               {kIndependent, "independent"},
+                               {kGraph, "graph"}});
 }();
 
 /// Properties of a shape that do not depend on numbers. Its wires and its rule against deadlock are its plan's
 /// (ringbus/topology).
 struct ShapeProperties {
   bool has_packets = true;       ///< resources exchange packets; otherwise each traces its own rays, without links
-  bool carries_traffic = false;  ///< synthetic traffic runs on it: each round goes through all resources and no hub
+  bool carries_traffic = false;  ///< synthetic traffic runs on it
 };
 
 constexpr ShapeProperties properties_of(TopologyShape shape) {
@@ -47,6 +51,7 @@ constexpr ShapeProperties properties_of(TopologyShape shape) {
     case kBidirectional:
     case kMultiRing:
     case kPointToPoint:
+    case kGraph:
       return {.carries_traffic = true};
     case kIndependent:
       return {.has_packets = false};
@@ -88,6 +93,9 @@ struct LinkConfig {
 
 /// The testers of one resource that differs from the rest.
 struct ResourceOverride {
+  static constexpr std::string_view kRequired = "resource";
+  static constexpr std::string_view kRowPath = "";  ///< the keys of its testers are those of the whole machine
+
   std::int64_t resource = 0;
   TestersConfig testers;
 };
@@ -102,6 +110,8 @@ struct TopologyConfig {
   Flow flow = Flow::kCredits;
   LinkConfig link;
   std::vector<ResourceOverride> overrides;
+  std::vector<GraphNode> nodes;  ///< of a graph
+  std::vector<GraphLink> links;  ///< likewise
 };
 
 /// The testers of a resource: its own, or those of the whole machine.
@@ -135,11 +145,11 @@ void describe(V& v, ResourceOverride& c) {
 template <class V>
 void describe(V& v, TopologyConfig& c) {
   v.field("resources", c.resources, IntRange{1, kMaxResources}, "resources", "The number of compute resources.");
-  v.choice("shape", c.shape, "The network that links the resources.")
+  v.choice("shape", c.shape, "The network that links the resources; a graph is drawn by nodes and links.")
       .relax("ring_directions", TopologyShape::kBidirectional, Relaxed{.times = 0},
              c.shape == TopologyShape::kRing && c.resources > 1)
       .only(EngineKind::kCycle, "", TopologyShape::kMultiRing, TopologyShape::kHierarchical, TopologyShape::kBus,
-            TopologyShape::kIndependent, TopologyShape::kCentral);
+            TopologyShape::kIndependent, TopologyShape::kCentral, TopologyShape::kGraph);
   v.field("rings", c.rings, IntRange{1, 64}, "rings", "The number of rings of a multi_ring.")
       .relax("rings", Better::kTwice, Relaxed{.times = 0});
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");
@@ -147,10 +157,13 @@ void describe(V& v, TopologyConfig& c) {
            "The form of a central machine: test cells (testers.simd.lanes), each for the rays of its places in ray "
            "memory, or testers behind a distributor (testers.distributor).");
   v.choice("visit", c.visit,
-           "A packet is handled by all resources, or only by the owners of its rays, which point_to_point implies.");
+           "A packet is handled by all resources, or only by the owners of its rays, which point_to_point and graph "
+           "imply.");
   v.choice("flow", c.flow, "The rule that keeps the links from filling up. The value none needs --force.");
   v.section("link", c.link, "Properties of every link.");
   v.list("overrides", c.overrides, "Resources that differ from the rest.");
+  v.list("nodes", c.nodes, "The nodes of a graph. Its resources are numbered in this order.");
+  v.list("links", c.links, "The links of a graph, one by one or by pattern.");
 }
 
 }  // namespace config

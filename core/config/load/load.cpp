@@ -5,6 +5,7 @@
 #include <cstring>
 #include <tuple>
 
+#include "core/config/graph/graph.h"
 #include "core/config/reader.h"
 #include "core/config/tree/tree.h"
 #include "core/system/input_file.h"
@@ -39,10 +40,16 @@ TestersConfig read_base_testers(const config::Node& root) {
   return testers;
 }
 
-/// A shape may imply a value where the file says nothing: point_to_point has no other visits than those of owners.
+/// A shape may imply a value where the file says nothing: point_to_point has no other visits than those of owners, a
+/// graph would hardly have, and its nodes are its resources.
 void imply(const config::Node& root, Config& config) {
-  if (config.topology.shape != TopologyShape::kPointToPoint) return;
-  if (root.find("topology")->find("visit") == nullptr) config.topology.visit = Visit::kOwners;
+  const config::Node* topology = root.find("topology");
+  const bool graph = config.topology.shape == TopologyShape::kGraph;
+  if ((graph || config.topology.shape == TopologyShape::kPointToPoint) && topology->find("visit") == nullptr)
+    config.topology.visit = Visit::kOwners;
+  if (!graph || topology->find("resources") != nullptr) return;
+  const std::int64_t drawn = config::drawn_resources(config.topology);
+  config.topology.resources = std::clamp<std::int64_t>(drawn, 1, config::kMaxResources);
 }
 
 /// Takes `$schema` away, by which a file tells editors where the schema is; it says nothing about the machine.

@@ -73,6 +73,10 @@ class NetworkRules {
     if (c.verify != Verify::kNone)
       breach_("verify", fmt::format("traffic has no hits to verify; expected none, found {}", enum_name(c.verify)));
     const TrafficConfig& traffic = c.workload.traffic;
+    if (c.topology.shape == TopologyShape::kGraph && traffic.source_queues != TrafficConfig::SourceQueues::kShared)
+      breach_("workload.traffic.source_queues",
+              fmt::format("at a node of a graph the source is one queue; expected shared, found {}",
+                          enum_name(traffic.source_queues)));
     if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
       breach_("workload.traffic.hotspot",
               fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, traffic.hotspot));

@@ -13,4 +13,7 @@ using RuleBreach = std::function<void(const std::string& key, std::string messag
 /// The rules of topology, flow control, synthetic traffic and faults. `force` permits `flow: none`.
 void check_network(const Config& config, bool force, const RuleBreach& breach);
 
+/// The rules of a network that is drawn (`topology.shape: graph`).
+void check_graph(const Config& config, const RuleBreach& breach);
+
 }  // namespace carousel::config

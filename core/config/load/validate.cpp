@@ -43,6 +43,7 @@ class Rules {
     order_has_a_depth_first_ray();
     query_needs_a_file();
     hashed_homes_spill();
+    config::check_graph(c, breach);
     config::check_network(c, options_.force, breach);
     config::check_ranks(c, breach);
     sampling_fits();

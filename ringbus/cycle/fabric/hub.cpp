@@ -4,13 +4,21 @@
 
 #include "ringbus/cycle/fabric/bridge.h"
 #include "ringbus/cycle/fabric/bus.h"
+#include "ringbus/cycle/fabric/router.h"
 
 namespace carousel::ringbus::cycle {
 
 std::unique_ptr<Hub> make_hub(std::uint32_t hub, const Topology& topology, std::span<const Packet> packets,
                               std::vector<InPort> in, std::vector<OutPort> out) {
-  if (topology.hubs()[hub] == Topology::Hub::kBus)
-    return std::make_unique<Bus>(topology, packets, std::move(in), std::move(out));
+  switch (topology.hubs()[hub]) {
+    case Topology::Hub::kBus:
+      return std::make_unique<Bus>(topology, packets, std::move(in), std::move(out));
+    case Topology::Hub::kRouter:
+      return std::make_unique<Router>(ResourceId(static_cast<std::uint32_t>(topology.resources()) + hub), topology,
+                                      std::move(in), std::move(out));
+    case Topology::Hub::kBridge:
+      break;
+  }
   return std::make_unique<Bridge>(hub, topology, packets, std::move(in), std::move(out));
 }
 

@@ -74,12 +74,13 @@ void Tile::pass_ahead(Cycle limit) {
     for (std::size_t d = 1; d < ports_.in.size(); ++d)
       if (ports_.in[d].next() < ports_.in[first].next()) first = d;
     InPort& in = ports_.in[first];
-    OutPort& out = ports_.out[first];
     const Cycle at = in.next();
-    if (at >= limit || at <= now_ || samples_.due(at) || in.front().skip == 0 || !out.open(at, 1)) return;
+    if (at >= limit || at <= now_ || samples_.due(at) || !dispatcher_.passes_by(in.front())) return;
+    OutPort& out = dispatcher_.way_of(first, in.front());
+    if (!out.open(at, 1)) return;
     Token token = in.take(at);
-    --token.skip;
-    out.launch(token, at, token.skip > 0);
+    const bool through = dispatcher_.pass_by(token);
+    out.launch(token, at, through);
     now_ = at - 1;  // in the same cycle, something may arrive at other ports
   }
 }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 
 #include "core/system/error.h"
+#include "ringbus/cycle/traffic/routed_node.h"
 #include "ringbus/cycle/traffic/traffic_node.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/protocol/flow_rules.h"
@@ -24,7 +26,7 @@ class TrafficRun {
       : config_(config),
         options_(options),
         topology_(config.topology),
-        flow_(config.topology.flow, topology_.direct()),
+        flow_(config.topology.flow, topology_.direct() || topology_.routed()),
         plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources()) {
     const TrafficConfig& traffic = config.workload.traffic;
     const auto width = static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle);
@@ -33,12 +35,16 @@ class TrafficRun {
     const MessageKind deliveries =
         channels_.carry({"deliveries", "resources", "neighbours", "wires beside the links", width}, kAckBytes);
     for (const Topology::Wire& wire : topology_.wires()) {
-      const ChannelEnds ends{wire.from.value, wire.to.value, link_latency()};
+      const ChannelEnds ends{wire.from.value, wire.to.value, static_cast<Cycle>(wire.latency_cycles)};
       wires_.push_back(std::make_unique<WireOf<TrafficToken>>(channels_.at(packets, ends)));
       if (flow_.counts_deliveries())
         acks_.push_back(std::make_unique<Channel<TrafficAck>>(channels_.at(deliveries, ends)));
     }
     const TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
+    if (topology_.routed()) {
+      add_routed(settings);
+      return;
+    }
     for (std::uint32_t r = 0; r < topology_.resources(); ++r) {
       TrafficSource source(traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ResourceId(r),
                            plan_.gap);
@@ -56,7 +62,7 @@ class TrafficRun {
     std::vector<const Agent*> agents;
     for (const auto& node : nodes_) agents.push_back(node.get());
     channels_.connect(wakeups, agents);
-    run_windows(parts, wakeups, link_latency(), [&](Cycle reached) {
+    run_windows(parts, wakeups, least_latency(), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -79,6 +85,37 @@ class TrafficRun {
   static constexpr std::uint64_t kAckBytes = 4;  // source and direction
 
   Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
+  /// Of any link.
+  Cycle least_latency() const {
+    Cycle least = link_latency();
+    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
+      const auto latency = static_cast<Cycle>(topology_.wires()[i].latency_cycles);
+      least = i == 0 ? latency : std::min(least, latency);
+    }
+    return least;
+  }
+
+  /// The nodes of a graph: resources, which have sources, and routers.
+  void add_routed(const TrafficNodeSettings& settings) {
+    const auto resources = static_cast<std::uint32_t>(topology_.resources());
+    for (std::uint32_t n = 0; n < resources + topology_.hubs().size(); ++n) {
+      std::optional<TrafficSource> source;
+      if (n < resources)
+        source.emplace(config_.workload.traffic, static_cast<std::uint64_t>(config_.image.seed), resources,
+                       ResourceId(n), plan_.gap);
+      RoutedNode::Ports ports;
+      for (const std::uint32_t i : topology_.ports(ResourceId(n)).in)
+        ports.in.push_back({wires_[i].get(), static_cast<Cycle>(topology_.wires()[i].latency_cycles)});
+      for (const std::uint32_t i : topology_.ports(ResourceId(n)).out) {
+        const Topology::Wire& wire = topology_.wires()[i];
+        ports.out.emplace_back(*wires_[i], static_cast<Cycle>(wire.latency_cycles + wire.node_cycles),
+                               static_cast<std::uint32_t>(wire.depth), 1);
+      }
+      nodes_.push_back(std::make_unique<RoutedNode>(ResourceId(n), topology_, settings, std::move(source),
+                                                    n < resources ? plan_.packets[n] : 0, plan_.window,
+                                                    std::move(ports)));
+    }
+  }
 
   TrafficNode::Ports ports_of(ResourceId id) const {
     TrafficNode::Ports ports;
@@ -114,21 +151,22 @@ class TrafficRun {
     out.window_begin = plan_.window.begin;
     out.window_end = plan_.window.end;
     out.packets = static_cast<std::uint64_t>(config_.workload.traffic.packets);
-    out.flits = nodes_.front()->flits();
+    out.flits = traffic_node_settings(config_.workload.traffic, config_.topology.link).flits;
     for (const auto& node : nodes_) {
+      const TrafficOffered offered = node->offered();
       out.cycles = std::max(out.cycles, node->sink().last() + 1);
       out.delivered += node->sink().delivered();
-      out.offered += node->source().offered();
+      out.offered += offered.packets;
       out.accepted += node->sink().accepted();
       out.accepted_hops += node->sink().accepted_hops();
-      out.routers += node->source().routers();
+      out.routers += offered.routers;
+      out.travel += offered.travel;
       out.latency.add(node->sink().latency());
     }
-    std::vector<std::size_t> exits(nodes_.size());
     for (const Topology::Wire& wire : topology_.wires()) {
-      const TrafficNode& node = *nodes_[wire.from.value];
-      const std::size_t exit = exits[wire.from.value]++;
-      const TrafficNode::Out& port = node.out(exit);
+      const TrafficAgent& node = *nodes_[wire.from.value];
+      const std::size_t exit = topology_.out_port_of(out.links.size());
+      const TrafficAgent::Out& port = node.out(exit);
       out.busy_in_window.push_back(node.busy_in_window(exit));
       out.links.push_back(
           {wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
@@ -146,7 +184,7 @@ class TrafficRun {
   ChannelList channels_;
   std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires()
   std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;    // beside them
-  std::vector<std::unique_ptr<TrafficNode>> nodes_;
+  std::vector<std::unique_ptr<TrafficAgent>> nodes_;          // resources, then routers
 };
 
 }  // namespace

@@ -9,13 +9,13 @@ namespace carousel::ringbus::cycle {
 TrafficNode::TrafficNode(ResourceId id, const Topology& topology, const FlowRules& flow,
                          const TrafficNodeSettings& settings, TrafficSource source, std::uint64_t packets,
                          TrafficWindow window, Ports ports)
-    : id_(id),
-      window_(window),
+    : TrafficAgent(settings, window),
+      id_(id),
       flits_(settings.flits),
+      link_latency_(settings.link_latency),
       places_wanted_(flow.places_to_inject()),
       injects_first_(flow.injects_first()),
       queues_(id, topology, settings, std::move(source), packets, window, ports.in.size()),
-      sink_(settings, window),
       credits_(id, topology, settings, std::move(ports.acks_in), std::move(ports.acks_out)) {
   for (std::size_t d = 0; d < ports.in.size(); ++d) ways_.push_back({ports.in[d], std::move(ports.out[d])});
 }

@@ -6,16 +6,13 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/fabric/ports.h"
 #include "ringbus/cycle/traffic/delivery_credits.h"
 #include "ringbus/cycle/traffic/source_queues.h"
+#include "ringbus/cycle/traffic/traffic_agent.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/cycle/traffic/traffic_settings.h"
-#include "ringbus/cycle/traffic/traffic_sink.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
-#include "ringbus/cycle/traffic/traffic_token.h"
 #include "ringbus/protocol/flow_rules.h"
-#include "ringbus/time/agent.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {
@@ -36,10 +33,8 @@ namespace carousel::ringbus::cycle {
 ///   free. Acknowledgements travel on wires of their own that are never full, in the direction that the topology names.
 /// - `none`: nothing prevents it, and packets of the source go first, so that it shows.
 /// - The sink takes every packet after a bounded time, so point to point no packet waits for another one to move.
-class TrafficNode final : public Agent {
+class TrafficNode final : public TrafficAgent {
  public:
-  using In = InPortOf<TrafficToken>;
-  using Out = OutPortOf<TrafficToken>;
   struct Ports {
     std::vector<In> in;
     std::vector<Out> out;                      ///< as many; what comes in by one goes on by its fellow
@@ -57,13 +52,12 @@ class TrafficNode final : public Agent {
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
-  /// The ports of `ports.out`, in their order.
-  const Out& out(std::size_t port) const { return ways_[port].out; }
-  std::uint64_t flits() const { return flits_; }  ///< flits of a packet
-  const TrafficSink& sink() const { return sink_; }
-  const SourceQueues& source() const { return queues_; }
-  /// Cycles of the window in which the link of `ports.out` moved a flit, once the run is over.
-  Cycle busy_in_window(std::size_t port) const { return busy_before(port, 1) - busy_before(port, 0); }
+  const Out& out(std::size_t port) const override { return ways_[port].out; }
+  TrafficOffered offered() const override {
+    const std::uint64_t packets = queues_.offered(), routers = queues_.routers();
+    return {packets, routers, (routers - packets) * link_latency_ + packets * (flits_ - 1u)};
+  }
+  Cycle busy_in_window(std::size_t port) const override { return busy_before(port, 1) - busy_before(port, 0); }
 
  private:
   struct Way {
@@ -75,7 +69,6 @@ class TrafficNode final : public Agent {
 
   void advance(Cycle end);
   void pass_marks(Cycle end);
-  Cycle mark(std::size_t i) const { return i == 0 ? window_.begin : window_.end; }
   Cycle busy_before(std::size_t port, std::size_t i) const {
     return i < marks_passed_ ? ways_[port].busy[i] : out(port).busy(mark(i));
   }
@@ -93,9 +86,9 @@ class TrafficNode final : public Agent {
 
   ResourceId id_;
   std::vector<Way> ways_;
-  TrafficWindow window_;
   std::size_t marks_passed_ = 0;  // ends of the window that have passed
   std::uint16_t flits_;
+  Cycle link_latency_;
   std::uint32_t places_wanted_;  // in the next queue, to inject
   bool injects_first_;           // before packets on their way
 
@@ -106,7 +99,6 @@ class TrafficNode final : public Agent {
   std::size_t first_in_ = 0;      // the way that has the sink before the others
 
   SourceQueues queues_;
-  TrafficSink sink_;
   DeliveryCredits credits_;
 };
 

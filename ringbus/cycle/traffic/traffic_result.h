@@ -21,6 +21,7 @@ struct TrafficResult {
   std::uint64_t accepted = 0;                ///< packets delivered within the window
   std::uint64_t accepted_hops = 0;           ///< links that these crossed
   std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
+  std::uint64_t travel = 0;                  ///< cycles that these would be on their way if each were alone
   std::uint64_t hops = 0;                    ///< links crossed by packets
   LatencyHistogram latency;                  ///< latency of the packets offered
   std::vector<cycle::LinkUse> links;
@@ -37,10 +38,10 @@ struct TrafficResult {
   }
   double routers_mean() const { return offered == 0 ? 0 : static_cast<double>(routers) / static_cast<double>(offered); }
   /// Mean latency of the packets offered if each were alone: see ringbus/cycle/traffic/traffic_node.h.
-  double zero_load_latency(const TrafficConfig& t, const LinkConfig& link) const {
+  double zero_load_latency(const TrafficConfig& t) const {
     if (offered == 0) return 0;
-    return static_cast<double>(t.inject_cycles + t.eject_cycles) + static_cast<double>(flits - 1) +
-           (routers_mean() - 1) * static_cast<double>(link.latency_cycles);
+    return static_cast<double>(t.inject_cycles + t.eject_cycles) +
+           static_cast<double>(travel) / static_cast<double>(offered);
   }
 };
 

@@ -13,6 +13,7 @@ struct TrafficNodeSettings {
   Cycle inject_cycles = 0, eject_cycles = 0;
   Cycle link_latency = 1;
   std::uint32_t link_depth = 1;
+  std::uint32_t packet_bytes = 1;
   std::uint16_t flits = 1;   ///< flits of a packet
   bool shared_queue = true;  ///< the source has one queue for all packets
 };
@@ -22,6 +23,7 @@ inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, c
           static_cast<Cycle>(traffic.eject_cycles),
           static_cast<Cycle>(link.latency_cycles),
           static_cast<std::uint32_t>(link.depth),
+          static_cast<std::uint32_t>(traffic.packet_bytes),
           static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(traffic.packet_bytes),
                                               static_cast<std::uint64_t>(link.bytes_per_cycle))),
           traffic.source_queues == TrafficConfig::SourceQueues::kShared};

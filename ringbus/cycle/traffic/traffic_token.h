@@ -13,6 +13,7 @@ struct TrafficToken {
   std::uint16_t skip = 0;         ///< resources to pass before its last one
   std::uint16_t link_cycles = 1;  ///< its flits: the cycles for which it occupies a link
   std::uint16_t hops = 0;         ///< links that it crosses in all
+  std::uint16_t stop = 0;         ///< its destination, where packets are routed
 };
 
 /// A packet has been delivered; its source may have another one on the way.

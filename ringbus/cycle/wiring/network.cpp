@@ -6,10 +6,7 @@ namespace carousel::ringbus::cycle {
 
 Network::Network(ChannelList& list, const Machine& machine, const LinkConfig& link, const FaultsConfig& faults,
                  std::int64_t contexts)
-    : machine_(machine),
-      faults_(faults),
-      depth_(static_cast<std::uint32_t>(link.depth)),
-      egress_places_(static_cast<std::size_t>(contexts) + 1) {
+    : machine_(machine), faults_(faults), egress_places_(static_cast<std::size_t>(contexts) + 1) {
   const Topology& topology = machine.topology;
   const MessageKind packets =
       list.carry({"packets", "resources", "neighbours", "links", static_cast<std::uint64_t>(link.bytes_per_cycle)});
@@ -29,12 +26,16 @@ Network::NodePorts Network::ports_at(ResourceId node) const {
   // wherever packets are sent directly, there are places for all packets there are, as nothing else would keep circles
   // of links from closing.
   const bool hub = node.value >= topology.resources();
-  const std::size_t places = hub || topology.direct() ? machine_.packets.size() : egress_places_;
+  std::size_t places = hub || topology.room_for_all() ? machine_.packets.size() : egress_places_;
+  if (hub)
+    if (const std::uint32_t given = topology.hub_places(node.value - topology.resources()); given > 0) places = given;
   NodePorts ports;
   for (const std::uint32_t i : topology.ports(node).in) ports.in.push_back({wires_[i].get(), latency(i)});
   for (const std::uint32_t i : topology.ports(node).out) {
-    OutPort& out = ports.out.emplace_back(*wires_[i], latency(i), depth_, places);
-    if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, latency(i)));
+    const Topology::Wire& wire = topology.wires()[i];
+    const Cycle away = latency(i) + static_cast<Cycle>(wire.node_cycles);
+    OutPort& out = ports.out.emplace_back(*wires_[i], away, static_cast<std::uint32_t>(wire.depth), places);
+    if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, away));
   }
   return ports;
 }

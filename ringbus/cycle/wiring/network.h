@@ -32,7 +32,6 @@ class Network {
  private:
   const Machine& machine_;
   FaultsConfig faults_;
-  std::uint32_t depth_;
   std::size_t egress_places_;
   std::vector<std::unique_ptr<Wire>> wires_;  // as the topology's
   std::vector<std::unique_ptr<Hub>> hubs_;

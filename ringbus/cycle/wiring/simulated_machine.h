@@ -61,8 +61,8 @@ class SimulatedMachine {
   /// Calls `body` with each wire and the port by which it leaves its node.
   template <class Body>
   void for_each_link(const Body& body) const {
-    std::vector<std::size_t> ports(resources_.size() + network_.hubs().size());
-    for (const Topology::Wire& wire : shared_.topology.wires()) body(wire, ports[wire.from.value]++);
+    const Topology& topology = shared_.topology;
+    for (std::size_t i = 0; i < topology.wires().size(); ++i) body(topology.wires()[i], topology.out_port_of(i));
   }
   /// The near ends of the links that leave a node.
   const std::vector<OutPort>& out_of(ResourceId node) const {

@@ -37,6 +37,13 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
   void on_field(std::string_view, Vec3& value, config::RealRange range, const char*, const char*) {
     for (int axis = 0; axis < 3; ++axis) value[axis] = static_cast<float>(real(range));
   }
+  void on_field(std::string_view, GridSize& value, config::IntRange range, const char*, const char*) {
+    value = {};
+    if (pick(2) == 1) {
+      field("", value.columns, range, "", "");
+      field("", value.rows, range, "", "");
+    }
+  }
   void on_field(std::string_view, bool& value, const char*, const char*) { value = pick(2) == 1; }
   void on_field(std::string_view, std::string& value, const char*, const char*) {
     static const char* const kTexts[] = {"a.glb",

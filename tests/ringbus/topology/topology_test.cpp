@@ -17,6 +17,12 @@ TopologyConfig config(TopologyShape shape, std::int64_t resources, Visit visit =
   c.shape = shape;
   c.resources = resources;
   c.visit = visit;
+  if (shape != TopologyShape::kGraph) return c;
+  c.nodes.emplace_back().name = "r";
+  c.nodes.back().count = resources;
+  if (resources == 1) return c;
+  GraphLink& all = c.links.emplace_back();
+  all.from = all.all_to = "r[*]";
   return c;
 }
 
@@ -246,7 +252,8 @@ Topology::Route shortest(const TopologyConfig& c, std::uint32_t from, std::uint3
   const auto n = static_cast<std::uint32_t>(c.resources);
   const std::uint32_t ahead = (to + n - from) % n, back = n - ahead;
   const auto hops = static_cast<std::uint16_t>(ahead);
-  if (c.shape == TopologyShape::kPointToPoint) return {0, static_cast<std::uint16_t>(ahead != 0)};
+  if (c.shape == TopologyShape::kPointToPoint || c.shape == TopologyShape::kGraph)
+    return {0, static_cast<std::uint16_t>(ahead != 0)};
   if (c.shape == TopologyShape::kMultiRing) return {static_cast<std::uint16_t>(random % c.rings), hops};
   if (c.shape == TopologyShape::kBidirectional && (ahead > back || (ahead == back && random % 2 == 1)))
     return {1, static_cast<std::uint16_t>(back)};

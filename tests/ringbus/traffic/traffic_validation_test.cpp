@@ -59,7 +59,7 @@ TEST(TrafficValidation, TakesAsLongAsBookSim2) {
     const TrafficResult ours = run_traffic(config, {});
     const double hop = static_cast<double>(config.topology.link.latency_cycles);
     // 4 (R - 1) + 6 + (L - 1), or 6 R + 1, at our own R.
-    const double closed = ours.zero_load_latency(config.workload.traffic, config.topology.link);
+    const double closed = ours.zero_load_latency(config.workload.traffic);
     EXPECT_NEAR(
         closed,
         row.pipeline == "short" ? 4 * (ours.routers_mean() - 1) + 5 + double(row.flits) : 6 * ours.routers_mean() + 1,

@@ -43,7 +43,7 @@ export function bends(links, facts) {
     const key = `${from} ${to}`;
     const before = seen.get(key) ?? 0;
     seen.set(key, before + 1);
-    const both = facts.shape === 'bidirectional' || facts.shape === 'point_to_point' || facts.resources === 2;
+    const both = ['bidirectional', 'point_to_point', 'graph'].includes(facts.shape) || facts.resources === 2;
     // A ring's links follow its circle.
     return (both ? 0.16 : 0.1) + 0.22 * before;
   });

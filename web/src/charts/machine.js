@@ -21,6 +21,7 @@ export function machine(context) {
   const at = places(facts, hubs);
   const bent = bends(ends, facts);
   const bus = facts.shape === 'bus';
+  const hubName = facts.shape === 'graph' ? 'router' : 'bridge';
   const most = context.most ?? roundMost([...resourceUse, ...linkUse]);
   const now = context.now ?? {resources: resourceUse, links: linkUse};
   const room = Math.min(width, height) * (facts.shape === 'independent' || bus ? 1.2 : 2.2);
@@ -29,8 +30,8 @@ export function machine(context) {
   const node = (i) => {
     const hub = i >= facts.resources;
     const colour = hub ? colours.panel : scaleColour((now.resources[i] ?? 0) / most);
-    const name = hub ? (bus ? 'bus' : `bridge ${i - facts.resources}`) : `resource ${i}`;
-    const short = hub ? (bus ? 'bus' : `B${i - facts.resources}`) : `${i}`;
+    const name = hub ? (bus ? 'bus' : `${hubName} ${i - facts.resources}`) : `resource ${i}`;
+    const short = hub ? (bus ? 'bus' : `${hubName[0].toUpperCase()}${i - facts.resources}`) : `${i}`;
     const ink = hub ? colours.ink : luminance(colour) > 0.5 ? '#000' : '#fff';
     return {
       id: `${i}`, name, x: at[i][0], y: at[i][1], value: hub ? undefined : now.resources[i],

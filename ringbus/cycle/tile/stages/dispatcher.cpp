@@ -15,7 +15,8 @@ Dispatcher::Dispatcher(const TileParts& parts, const TileSettings& settings, std
       entry_(entry),
       help_(help),
       visit_all_(parts.machine.topology.visits_all()),
-      cuts_through_(!visit_all_ && !parts.machine.topology.direct()),
+      routed_(parts.machine.topology.routed()),
+      cuts_through_(routed_ || (!visit_all_ && !parts.machine.topology.direct())),
       broadcasts_(parts.machine.topology.broadcasts()),
       fetch_by_resource_(settings.fetches_by_resource()),
       window_(static_cast<std::size_t>(settings.testers.window)),
@@ -38,14 +39,15 @@ bool Dispatcher::cut_through(Cycle now, bool dispatch_rests) {
   bool moved = false;
   for (std::size_t d = 0; d < in_.size(); ++d) {
     InPort& in = in_[d];
-    OutPort& out = parts_.egress.port(d);
-    while (in.next() <= now && out.has_place() && (has_window() ? choose_to_cut(d, now) : in.front().skip > 0)) {
+    while (in.next() <= now && (has_window() ? choose_to_cut(d, now) : passes_by(in.front()))) {
+      OutPort& out = way_of(d, in.front());
+      if (!out.has_place()) break;
       Token token = in.take(now);
-      --token.skip;
+      const bool through = pass_by(token);
       if (dispatch_rests && out.open(now, 1))
-        out.launch(token, now, token.skip > 0);
+        out.launch(token, now, through);
       else
-        out.push(token, now, token.skip > 0);
+        out.push(token, now, through);
       moved = true;
     }
   }
@@ -55,9 +57,10 @@ bool Dispatcher::cut_through(Cycle now, bool dispatch_rests) {
 // ---- packets that have arrived
 
 std::optional<Dispatcher::Decision> Dispatcher::decide(std::size_t d, const Token& token) {
+  if (passes_by(token) && (routed_ || !visit_all_)) return std::nullopt;
   if (token.skip > 0) {
-    if (!visit_all_) return std::nullopt;
-    return Decision{Action::kPassOn, &parts_.egress.port(d)};
+    const std::size_t port = routed_ ? parts_.logic.out_port(parts_.machine.packet(token.packet)) : d;
+    return Decision{Action::kPassOn, &parts_.egress.port(port)};
   }
   if (token.passes && !token.answers) return Decision{Action::kHear};
   const Packet& packet = parts_.machine.packet(token.packet);
@@ -104,7 +107,8 @@ void Dispatcher::take(const Decision& decision, std::size_t d, Cycle now) {
       --token.skip;
       parts_.dispatch.count_idle_visit(token.rays);
       parts_.dispatch.occupy(now, token.entries, SliceKind::kPass, id);
-      parts_.egress.port(d).push(token, parts_.dispatch.free_at(), false);
+      if (routed_) token.stop = static_cast<std::uint16_t>(parts_.machine.topology.next(packet, this->id()).value);
+      decision.place->push(token, parts_.dispatch.free_at(), routed_ && pass_by(token));
       return;
     case Action::kHear:  // its owner may have issued it anew
       parts_.dispatch.count_idle_visit(token.rays);
@@ -211,11 +215,11 @@ std::size_t Dispatcher::seen(std::size_t d, Cycle now) const {
   return std::min(window_, in_[d].arrived(now));
 }
 
-/// Brings a packet that only passes to the front, if there is one.
+/// Brings a packet that only passes to the front, if there is one with a place to leave.
 bool Dispatcher::choose_to_cut(std::size_t d, Cycle now) {
   InPort& in = in_[d];
   for (std::size_t i = 0, end = seen(d, now); i < end; ++i) {
-    if (in.peek(i).skip == 0) continue;
+    if (!passes_by(in.peek(i)) || !way_of(d, in.peek(i)).has_place()) continue;
     in.bring_forward(i);
     return true;
   }

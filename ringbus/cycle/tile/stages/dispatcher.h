@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "ringbus/cycle/fabric/course.h"
 #include "ringbus/cycle/tile/stages/issue_queue.h"
 #include "ringbus/cycle/tile/stages/ray_entry.h"
 
@@ -35,8 +36,22 @@ class Dispatcher {
   bool cuts_through() const { return cuts_through_; }
   bool has_window() const { return window_ > 1; }
 
+  /// Tells whether a packet goes by without a look into it; only where such packets cut through.
+  bool passes_by(const Token& token) const { return routed_ ? token.stop != id().value : token.skip > 0; }
+  /// The port by which such a packet leaves that has come in by port `d`.
+  OutPort& way_of(std::size_t d, const Token& token) {
+    return parts_.egress.port(routed_ ? parts_.machine.topology.exit(id(), ResourceId(token.stop)).port : d);
+  }
+  /// Prepares such a packet for its next link. Returns whether the next node sends it on when its head has come.
+  bool pass_by(Token& token) const {
+    if (routed_) [[unlikely]]
+      return course_of(token, parts_.machine.topology, id()).through;
+    --token.skip;
+    return token.skip > 0;
+  }
+
   /// The first packet of a queue needs dispatch, or may be brought there.
-  bool stops_here(const InPort& in) const { return has_window() || !cuts_through_ || in.front().skip == 0; }
+  bool stops_here(const InPort& in) const { return has_window() || !cuts_through_ || !passes_by(in.front()); }
   /// Something waits for dispatch at `now`, or could have gone if it had been free.
   bool is_wanted(Cycle now) const {
     if (entry_.waiting() || issue_.front_is_ready()) return true;
@@ -109,7 +124,7 @@ class Dispatcher {
   IssueQueue& issue_;
   RayEntry& entry_;
   const ShadeHelp& help_;
-  bool visit_all_, cuts_through_, broadcasts_, fetch_by_resource_;
+  bool visit_all_, routed_, cuts_through_, broadcasts_, fetch_by_resource_;
   std::size_t window_;                    // packets at the front of an input queue among which it chooses
   std::size_t next_in_ = 0;               // ports have their turns
   std::vector<std::size_t> passed_over_;  // by port: how often the first one has been

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "ringbus/cycle/fabric/course.h"
+
 namespace carousel::ringbus::cycle {
 
 void Egress::depart(PacketId id, Cycle ready, bool reserved) {
@@ -29,6 +31,12 @@ void Egress::depart(PacketId id, Cycle ready, bool reserved) {
   count_sent(packet, load, answers);
   if (heard && !answers) answers_due(id) = machine_.topology.other_owners(packet);
   token.skip = machine_.topology.skip(packet, id_);
+  if (machine_.topology.routed()) {
+    token.stop = static_cast<std::uint16_t>(machine_.topology.next(packet, id_).value);
+    const Course course = course_of(token, machine_.topology, id_);
+    out.push(token, ready, course.through);
+    return;
+  }
   out.push(token, ready, !machine_.topology.visits_all() && token.skip > 0);
 }
 

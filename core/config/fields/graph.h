@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/fields/field.h"
+
+namespace carousel {
+
+/// The kinds of nodes of a network that is drawn (`topology.shape: graph`).
+enum class GraphNodeKind { kResource, kRouter, kCache, kMemory, kShading, kPacketProcess };
+template <>
+inline constexpr auto kEnumNames<GraphNodeKind> = [] {
+  using enum GraphNodeKind;
+  return names<GraphNodeKind>({{kResource, "resource"},
+                               {kRouter, "router"},
+                               {kCache, "cache"},
+                               {kMemory, "memory"},
+                               {kShading, "shading"},
+                               {kPacketProcess, "packet_process"}});
+}();
+
+/// Resources and routers can be simulated; the others keep their places and side wires of today.
+constexpr bool is_built(GraphNodeKind kind) {
+  return kind == GraphNodeKind::kResource || kind == GraphNodeKind::kRouter;
+}
+
+/// The time at which a router sends a packet on.
+enum class Forward { kHead, kWhole };
+template <>
+inline constexpr auto kEnumNames<Forward> = [] {
+  using enum Forward;
+  return names<Forward>({{kHead, "head"}, {kWhole, "whole"}});
+}();
+
+/// A node of the graph, or a group of equal ones.
+struct GraphNode {
+  static constexpr std::string_view kRequired = "name";
+  static constexpr std::string_view kRowPath = "topology.nodes";
+
+  std::string name;
+  GraphNodeKind kind = GraphNodeKind::kResource;
+  std::optional<std::int64_t> count;
+  std::int64_t latency_cycles = 0;
+  std::optional<std::int64_t> buffers;
+  Forward forward = Forward::kHead;
+
+  friend bool operator==(const GraphNode&, const GraphNode&) = default;
+};
+
+/// Columns and rows of a mesh; none by default.
+struct GridSize {
+  std::int64_t columns = 0, rows = 0;
+
+  bool any() const { return columns > 0; }
+  friend bool operator==(const GridSize&, const GridSize&) = default;
+};
+
+/// A link of the graph, or a pattern of links that are alike.
+struct GraphLink {
+  static constexpr std::string_view kRequired = "";
+  static constexpr std::string_view kRowPath = "topology.link";  ///< what it does not say is said there
+
+  std::string from, to, all_to, ring, line, of;
+  GridSize mesh;
+  bool both = false;
+  std::optional<std::int64_t> latency_cycles, bytes_per_cycle, depth;
+
+  friend bool operator==(const GraphLink&, const GraphLink&) = default;
+};
+
+namespace config {
+
+template <class V>
+void describe(V& v, GraphNode& c) {
+  v.field("name", c.name, "", "The name of the node, or of the group.");
+  v.choice("kind", c.kind,
+           "A compute resource, or a router, which only passes packets on. The other kinds are not built yet.");
+  v.field_or_auto("count", c.count, IntRange{1, kMaxResources}, "nodes",
+                  "The number of nodes of a group, called name[0] and on; auto is one node of that very name.");
+  v.field("latency_cycles", c.latency_cycles, IntRange{0, 1'000'000}, "cycles",
+          "The time that the node takes before a packet leaves by a link, besides the link's.");
+  v.field_or_auto("buffers", c.buffers, IntRange{1, 65536}, "packets",
+                  "The places of a router for each link that leaves it; auto is room for all packets there are.");
+  v.choice("forward", c.forward,
+           "A router sends a packet on when its head has come, if the next link is as wide, or the whole packet.");
+}
+
+template <class V>
+void describe(V& v, GraphLink& c) {
+  v.field("from", c.from, "", "The node that it leaves, or several, such as r[*] or r[0..3].");
+  v.field("to", c.to, "", "The node to which it leads. Of several on both sides, each goes with its fellow.");
+  v.field("all_to", c.all_to, "", "Nodes to each of which all of `from` have a link, but for themselves.");
+  v.field("ring", c.ring, "", "Nodes each of which has a link to the next, and the last to the first.");
+  v.field("line", c.line, "", "Nodes each of which has a link to the next.");
+  v.field("mesh", c.mesh, IntRange{1, kMaxResources}, "nodes",
+          "Columns and rows of nodes with links in both directions to their neighbours.");
+  v.field("of", c.of, "", "The nodes of a mesh, row by row; without it, all resources.");
+  v.field("both", c.both, "", "Each link has a fellow in the other direction.");
+  v.field_or_auto("latency_cycles", c.latency_cycles, kCycles, "cycles",
+                  "The time that a packet takes over the link; auto is that of topology.link.")
+      .relax("link_latency", Better::kHalf);
+  v.field_or_auto("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",
+                  "The width of the link; auto is that of topology.link.")
+      .relax("link_bandwidth", Better::kTwice);
+  v.field_or_auto("depth", c.depth, IntRange{1, 65536}, "packets",
+                  "The number of packets that the link holds; auto is that of topology.link.")
+      .relax("packets_in_flight", Better::kTwice);
+}
+
+}  // namespace config
+}  // namespace carousel

@@ -1,0 +1,231 @@
+#include "core/config/graph/graph.h"
+
+#include <algorithm>
+#include <map>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "core/config/graph/node_names.h"
+
+namespace carousel::config {
+
+namespace {
+
+using Nodes = std::vector<std::uint32_t>;
+
+constexpr std::size_t kMaxDrawn = 1024;  // resources and routers
+
+/// Writes out nodes and then links.
+class Drawing {
+ public:
+  Drawing(const TopologyConfig& config, std::vector<GraphIssue>& issues) : config_(config), issues_(issues) {}
+
+  Graph draw() {
+    if (drawn_resources(config_) > kMaxResources) {
+      issue("topology.nodes",
+            fmt::format("expected at most {} resources, found {}", kMaxResources, drawn_resources(config_)));
+      return {};
+    }
+    add_nodes(GraphNodeKind::kResource);
+    graph_.resources = static_cast<std::uint32_t>(graph_.nodes.size());
+    add_nodes(GraphNodeKind::kRouter);
+    if (graph_.nodes.size() > kMaxDrawn) {
+      issue("topology.nodes", fmt::format("expected at most {} nodes, found {}", kMaxDrawn, graph_.nodes.size()));
+      return {};
+    }
+    for (entry_ = 0; entry_ < config_.links.size(); ++entry_) add_links(config_.links[entry_]);
+    return std::move(graph_);
+  }
+
+ private:
+  void issue(const std::string& key, std::string message) { issues_.push_back({key, std::move(message)}); }
+  std::string link_key(std::string_view key) const {
+    return fmt::format("topology.links.{}{}{}", entry_, key.empty() ? "" : ".", key);
+  }
+  void link_issue(std::string_view key, std::string message) { issue(link_key(key), std::move(message)); }
+
+  void add_nodes(GraphNodeKind kind) {
+    for (std::size_t i = 0; i < config_.nodes.size(); ++i) {
+      const GraphNode& node = config_.nodes[i];
+      if (node.kind != kind || node.name.empty()) continue;
+      const std::string key = fmt::format("topology.nodes.{}.name", i);
+      if (!NodeNames::is_name(node.name)) {
+        issue(key, fmt::format("expected a letter or _ and then letters, digits and _, found '{}'", node.name));
+        continue;
+      }
+      if (!names_.add(node.name, static_cast<std::uint32_t>(graph_.nodes.size()), node.count)) {
+        issue(key, fmt::format("there is a node or group '{}' already", node.name));
+        continue;
+      }
+      for (std::int64_t n = 0; n < node.count.value_or(1); ++n)
+        graph_.nodes.push_back({node.count ? fmt::format("{}[{}]", node.name, n) : node.name, &node, i});
+    }
+  }
+
+  Nodes find(std::string_view key, const std::string& pattern) {
+    std::string error;
+    Nodes nodes = names_.find(pattern, error);
+    if (nodes.empty()) link_issue(key, std::move(error));
+    return nodes;
+  }
+
+  /// One of the five ways to say which nodes are linked.
+  void add_links(const GraphLink& link) {
+    const std::pair<std::string_view, bool> ways[] = {{"to", !link.to.empty()},
+                                                      {"all_to", !link.all_to.empty()},
+                                                      {"ring", !link.ring.empty()},
+                                                      {"line", !link.line.empty()},
+                                                      {"mesh", link.mesh.any()}};
+    const auto given = std::count_if(std::begin(ways), std::end(ways), [](const auto& way) { return way.second; });
+    if (given != 1) return link_issue("", "expected one of from and to, from and all_to, ring, line or mesh");
+    const bool starts = !link.to.empty() || !link.all_to.empty();
+    if (starts == link.from.empty())
+      return link_issue(starts ? "" : "from", starts
+                                                  ? "expected from beside to or all_to"
+                                                  : "a ring, a line or a mesh names all its nodes; expected no from");
+    if (!link.of.empty() && !link.mesh.any())
+      return link_issue("of", "only a mesh has nodes of its own; expected none");
+    if (!link.to.empty())
+      pairs(link);
+    else if (!link.all_to.empty())
+      product(link);
+    else if (link.mesh.any())
+      mesh(link);
+    else
+      chain(link, !link.ring.empty());
+  }
+
+  void pairs(const GraphLink& link) {
+    Nodes from = find("from", link.from), to = find("to", link.to);
+    if (from.empty() || to.empty()) return;
+    if (from.size() == 1) from.resize(to.size(), from[0]);
+    if (to.size() == 1) to.resize(from.size(), to[0]);
+    if (from.size() != to.size())
+      return link_issue("to", fmt::format("{} has {} nodes and {} has {}; expected as many, one on a side, or all_to",
+                                          link.from, from.size(), link.to, to.size()));
+    for (std::size_t i = 0; i < from.size(); ++i) add(link, from[i], to[i]);
+  }
+
+  void product(const GraphLink& link) {
+    const Nodes from = find("from", link.from), to = find("all_to", link.all_to);
+    for (const std::uint32_t a : from)
+      for (const std::uint32_t b : to)
+        if (a != b) add(link, a, b);
+  }
+
+  void chain(const GraphLink& link, bool closed) {
+    const Nodes nodes = closed ? find("ring", link.ring) : find("line", link.line);
+    if (nodes.empty()) return;
+    if (nodes.size() < 2)
+      return link_issue(closed ? "ring" : "line", fmt::format("expected two nodes at least, found {}", nodes.size()));
+    for (std::size_t i = 0; i + 1 < nodes.size(); ++i) add(link, nodes[i], nodes[i + 1]);
+    if (closed && !(link.both && nodes.size() == 2)) add(link, nodes.back(), nodes.front());
+  }
+
+  void mesh(const GraphLink& link) {
+    Nodes nodes;
+    if (link.of.empty())
+      for (std::uint32_t r = 0; r < graph_.resources; ++r) nodes.push_back(r);
+    else if (nodes = find("of", link.of); nodes.empty())
+      return;
+    const auto columns = static_cast<std::size_t>(link.mesh.columns), rows = static_cast<std::size_t>(link.mesh.rows);
+    if (columns * rows != nodes.size())
+      return link_issue(
+          "mesh", fmt::format("expected as many places as {} has nodes, {}, found {} x {} = {}",
+                              link.of.empty() ? "the graph" : link.of, nodes.size(), columns, rows, columns * rows));
+    GraphLink both = link;
+    both.both = true;
+    for (std::size_t at = 0; at < nodes.size(); ++at) {
+      if (at % columns + 1 < columns) add(both, nodes[at], nodes[at + 1]);
+      if (at + columns < nodes.size()) add(both, nodes[at], nodes[at + columns]);
+    }
+  }
+
+  void add(const GraphLink& link, std::uint32_t from, std::uint32_t to) {
+    add_one_way(link, from, to);
+    if (link.both) add_one_way(link, to, from);
+  }
+
+  void add_one_way(const GraphLink& link, std::uint32_t from, std::uint32_t to) {
+    const auto name = [&](std::uint32_t node) -> const std::string& { return graph_.nodes[node].name; };
+    if (from == to)
+      return link_issue("", fmt::format("a link leads from {0} to {0}; expected another node", name(from)));
+    const auto [known, added] = entries_.emplace(std::pair{from, to}, entry_);
+    if (!added)
+      return link_issue("", fmt::format("a second link from {} to {}, beside that of topology.links.{}; expected one, "
+                                        "twice as wide for example",
+                                        name(from), name(to), known->second));
+    const LinkConfig& all = config_.link;
+    graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
+                            link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
+                            entry_});
+  }
+
+  const TopologyConfig& config_;
+  std::vector<GraphIssue>& issues_;
+  NodeNames names_;
+  Graph graph_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> entries_;  // by the link's nodes
+  std::size_t entry_ = 0;
+};
+
+/// The nodes to which ways lead from `start`.
+std::vector<bool> reached(const Graph& graph, const std::vector<Nodes>& next, std::uint32_t start) {
+  std::vector<bool> reached(graph.nodes.size());
+  Nodes open{start};
+  reached[start] = true;
+  while (!open.empty()) {
+    const std::uint32_t at = open.back();
+    open.pop_back();
+    for (const std::uint32_t to : next[at])
+      if (!reached[to]) {
+        reached[to] = true;
+        open.push_back(to);
+      }
+  }
+  return reached;
+}
+
+}  // namespace
+
+std::int64_t drawn_resources(const TopologyConfig& config) {
+  std::int64_t sum = 0;
+  for (const GraphNode& node : config.nodes)
+    if (node.kind == GraphNodeKind::kResource) sum += node.count.value_or(1);
+  return sum;
+}
+
+Graph draw_graph(const TopologyConfig& config, std::vector<GraphIssue>& issues) {
+  return Drawing(config, issues).draw();
+}
+
+void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
+  if (graph.resources < 2) return;
+  std::vector<Nodes> next(graph.nodes.size());
+  std::vector<bool> linked(graph.nodes.size());
+  for (const Graph::Link& link : graph.links) {
+    next[link.from].push_back(link.to);
+    linked[link.from] = linked[link.to] = true;
+  }
+  bool all = true;
+  for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
+    if (linked[i]) continue;
+    all = all && i >= graph.resources;
+    issues.push_back({fmt::format("topology.nodes.{}", graph.nodes[i].entry),
+                      fmt::format("{} has no link; expected one to it and one from it", graph.nodes[i].name)});
+  }
+  if (!all) return;  // the ways that are missing are those
+  for (std::uint32_t from = 0; from < graph.resources; ++from) {
+    const std::vector<bool> known = reached(graph, next, from);
+    for (std::uint32_t to = 0; to < graph.resources; ++to) {
+      if (known[to]) continue;
+      issues.push_back({"topology.links", fmt::format("there is no way from {} to {}; expected links that lead there",
+                                                      graph.nodes[from].name, graph.nodes[to].name)});
+      return;  // one names the gap; there may be thousands
+    }
+  }
+}
+
+}  // namespace carousel::config

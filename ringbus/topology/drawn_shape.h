@@ -1,0 +1,20 @@
+#pragma once
+
+#include <string>
+
+#include "core/config/fields/topology.h"
+
+namespace carousel::ringbus {
+
+/// A shape as the graph that it is.
+struct DrawnShape {
+  TopologyConfig config;   ///< of shape: graph
+  bool possible = true;    ///< a graph can say it
+  bool same = true;        ///< run as this graph, a machine takes the same cycles
+  std::string difference;  ///< what a graph cannot say, or what is different
+};
+
+/// Draws a shape. The graph names its resources r[0] and on, and a hierarchical network's bridges bridge[0] and on.
+DrawnShape draw_shape(const TopologyConfig& config);
+
+}  // namespace carousel::ringbus

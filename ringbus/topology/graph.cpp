@@ -1,0 +1,158 @@
+#include "core/config/graph/graph.h"
+
+#include <algorithm>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "ringbus/topology/dependencies.h"
+#include "ringbus/topology/graph_facts.h"
+#include "ringbus/topology/rounds.h"
+#include "ringbus/topology/routes.h"
+#include "ringbus/topology/shapes.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+using config::Graph;
+
+/// The exits of all nodes towards all resources.
+std::vector<TopologyPlan::Exit> exits_of(const Graph& graph, const Routes& routes) {
+  std::vector<std::uint16_t> ports(graph.links.size()), links_of(graph.nodes.size());
+  std::vector<std::uint32_t> in_order(graph.links.size());
+  std::iota(in_order.begin(), in_order.end(), 0u);
+  std::ranges::sort(in_order, {}, [&](std::uint32_t link) { return graph.links[link].to; });
+  for (const std::uint32_t i : in_order) ports[i] = links_of[graph.links[i].from]++;
+  std::vector<TopologyPlan::Exit> exits(graph.nodes.size() * graph.resources);
+  for (std::uint32_t at = 0; at < graph.nodes.size(); ++at)
+    for (std::uint32_t to = 0; to < graph.resources; ++to) {
+      const std::uint32_t i = routes.link(at, to);
+      if (i == Routes::kNone) continue;
+      const Graph::Link& link = graph.links[i];
+      // A packet that changes to a link of another width is stored whole: its tail might be late, or wait.
+      const bool through = link.to != to && graph.nodes[link.to].drawn->forward == Forward::kHead &&
+                           graph.links[routes.link(link.to, to)].bytes_per_cycle == link.bytes_per_cycle;
+      exits[at * std::size_t{graph.resources} + to] = {ports[i], through};
+    }
+  return exits;
+}
+
+/// Links between two resources, there and back, that hold no more than `enough` packets: the smallest circles there
+/// are.
+std::vector<std::uint32_t> there_and_back(const Graph& graph, const Routes& routes,
+                                          const std::vector<std::uint64_t>& places, std::uint64_t enough) {
+  for (std::uint32_t i = 0; i < graph.links.size(); ++i) {
+    const Graph::Link& link = graph.links[i];
+    if (link.from >= graph.resources || link.to >= graph.resources || routes.link(link.from, link.to) != i) continue;
+    const std::uint32_t back = routes.link(link.to, link.from);
+    if (back != Routes::kNone && graph.links[back].to == link.from && places[i] + places[back] <= enough)
+      return {i, back};
+  }
+  return {};
+}
+
+/// Judges packets that visit resources: by the circles of links that wait for one another, and what these hold.
+class VisitJudge {
+ public:
+  VisitJudge(const TopologyConfig& config, const Graph& graph, const Routes& routes, TopologyPlan& plan)
+      : config_(config),
+        graph_(graph),
+        routes_(routes),
+        plan_(plan),
+        on_the_way_(static_cast<std::uint64_t>(plan.packets_in_flight) * graph.resources) {
+    for (const Graph::Link& link : graph.links) places_.push_back(static_cast<std::uint64_t>(link.depth) + 1);
+  }
+
+  /// Fills in the verdict, and whether resources need room for all packets.
+  void judge() {
+    std::vector<std::uint32_t> circle;
+    if (config_.visit == Visit::kOwners) circle = there_and_back(graph_, routes_, places_, on_the_way_);
+    if (circle.empty()) circle = smallest(true);
+    if (keeps(circle)) return;
+    if (config_.flow == Flow::kNone) {
+      plan_.verdict = {true, fmt::format("nothing bounds the packets on the way: {} resources may put {} each on links "
+                                         "of which a circle holds {} ({})",
+                                         graph_.resources, plan_.packets_in_flight, held(circle), named(circle))};
+      return;
+    }
+    // Resources may have more places; those of routers are given.
+    plan_.room_for_all = true;
+    const std::vector<std::uint32_t> of_routers = smallest(false);
+    if (of_routers.empty())
+      plan_.verdict = {false,
+                       fmt::format("room: a circle of links holds {} packets ({}), and {} resources put up to {} "
+                                   "each on the way, so every resource has egress places for all of them",
+                                   held(circle), named(circle), graph_.resources, plan_.packets_in_flight)};
+    else if (!keeps(of_routers))
+      plan_.verdict = {true,
+                       fmt::format("a circle of links holds {} packets ({}), and {} resources put up to {} each "
+                                   "on the way; routers with buffers: auto have room for all of them",
+                                   held(of_routers), named(of_routers), graph_.resources, plan_.packets_in_flight)};
+  }
+
+ private:
+  /// The circle that holds the fewest packets; any that holds no more than are on the way will do.
+  std::vector<std::uint32_t> smallest(bool bounded_resources) const {
+    std::vector<bool> bounded;
+    for (std::size_t i = 0; i < graph_.nodes.size(); ++i)
+      bounded.push_back(i < graph_.resources ? bounded_resources : graph_.nodes[i].drawn->buffers.has_value());
+    return visit_dependencies(graph_, routes_, config_.visit == Visit::kAll, bounded)
+        .smallest_circle(places_, on_the_way_);
+  }
+  std::uint64_t held(const std::vector<std::uint32_t>& circle) const {
+    std::uint64_t sum = 0;
+    for (const std::uint32_t link : circle) sum += places_[link];
+    return sum;
+  }
+  std::string named(const std::vector<std::uint32_t>& circle) const { return circle_text(graph_, circle); }
+  /// Tells whether the rule of topology.flow keeps the circle from filling up, and fills in the verdict then.
+  bool keeps(const std::vector<std::uint32_t>& circle) {
+    if (circle.empty())
+      plan_.verdict = {false, "no circle: links that wait for one another end at nodes with room for all packets"};
+    else if (config_.flow == Flow::kCredits && on_the_way_ < held(circle))
+      plan_.verdict = {
+          false, fmt::format("credits: {} resources with at most {} packets each put {} packets on the way, "
+                             "and the smallest circle of links holds {} ({}), so one place is always free",
+                             graph_.resources, plan_.packets_in_flight, on_the_way_, held(circle), named(circle))};
+    else if (config_.flow == Flow::kBubble && circle.size() == graph_.links.size() &&
+             graph_.nodes.size() == graph_.resources &&
+             std::ranges::all_of(graph_.links, [](const Graph::Link& link) { return link.depth >= 2; }))
+      plan_.verdict = {false,
+                       "bubble: the links are one ring, and a packet enters only where two places of the link "
+                       "are free, so one stays free"};
+    else
+      return false;
+    return true;
+  }
+
+  const TopologyConfig& config_;
+  const Graph& graph_;
+  const Routes& routes_;
+  TopologyPlan& plan_;
+  std::uint64_t on_the_way_;
+  std::vector<std::uint64_t> places_;  // by link, with one to leave its first node
+};
+
+}  // namespace
+
+TopologyPlan plan_graph(const TopologyConfig& config) {
+  const Graph graph = draw_checked(config);
+  const Routes routes(graph);
+  TopologyPlan plan;
+  plan.successors = {round_in_steps(config, 1)};
+  for (const Graph::Link& link : graph.links)
+    plan.wires.push_back({ResourceId(link.from), ResourceId(link.to), 0, link.latency_cycles,
+                          graph.nodes[link.from].drawn->latency_cycles, link.depth, link.bytes_per_cycle});
+  plan.routed = true;
+  plan.exits = exits_of(graph, routes);
+  for (std::size_t i = graph.resources; i < graph.nodes.size(); ++i) {
+    plan.hubs.push_back(TopologyPlan::Hub::kRouter);
+    plan.hub_places.push_back(static_cast<std::uint32_t>(graph.nodes[i].drawn->buffers.value_or(0)));
+  }
+  plan.packets_in_flight = packets_in_flight(config);
+  VisitJudge(config, graph, routes, plan).judge();
+  return plan;
+}
+
+}  // namespace carousel::ringbus

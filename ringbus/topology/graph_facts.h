@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "core/config/graph/graph.h"
+#include "ringbus/topology/plan.h"
+
+namespace carousel::ringbus {
+
+/// The graph of `topology.nodes` and `topology.links`. Throws a SimulationError if it has faults, which checked
+/// configurations have not.
+config::Graph draw_checked(const TopologyConfig& config);
+
+/// A few links of a circle by name.
+std::string circle_text(const config::Graph& graph, const std::vector<std::uint32_t>& circle);
+
+/// The ways of a graph between all pairs of resources, each with itself included: what a uniform load would meet.
+struct GraphFacts {
+  std::size_t resources = 0, routers = 0, links = 0;
+  double mean_nodes = 0;   ///< on a way, first and last included
+  double mean_cycles = 0;  ///< that links and the nodes before them take
+  std::string longest_from, longest_to;
+  std::int64_t longest_cycles = 0;
+  std::string busiest;              ///< the link that most ways use for its width
+  std::uint64_t busiest_pairs = 0;  ///< ways over it
+  /// Load at which the busiest link would be full: flits of the width of topology.link for each resource and cycle.
+  double bound = 0;
+};
+GraphFacts graph_facts(const TopologyConfig& config);
+
+/// Whether packets with one destination each, as in synthetic traffic, can stop one another.
+DeadlockVerdict traffic_verdict(const TopologyConfig& config);
+
+}  // namespace carousel::ringbus

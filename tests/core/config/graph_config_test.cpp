@@ -1,0 +1,166 @@
+// Networks that are drawn: what is read, what is refused and where, and that what is written reads back.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/config/graph/graph.h"
+#include "core/config/write.h"
+#include "tests/core/config/bad_config.h"
+
+namespace carousel::graph_config_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string kHead = "scene: {builtin: cornell}\nengine: {kind: cycle}\n";
+
+Config read(const std::string& topology) {
+  return parse_config(kHead + topology, "test.yaml");
+}
+
+/// The links by the names of their nodes.
+std::vector<std::string> links_of(const Config& config) {
+  std::vector<config::GraphIssue> issues;
+  const config::Graph graph = config::draw_graph(config.topology, issues);
+  EXPECT_TRUE(issues.empty()) << issues.front().message;
+  std::vector<std::string> out;
+  for (const config::Graph::Link& link : graph.links) out.push_back(graph.name_of(link));
+  return out;
+}
+
+TEST(GraphConfig, PatternsAreWrittenOutInOrder) {
+  const auto links = [](const std::string& list) {
+    return links_of(
+        read("topology:\n  shape: graph\n  nodes: [{name: r, count: 4}, {name: hub, kind: router}]\n  links: [" + list +
+             "]\n"));
+  };
+  EXPECT_THAT(links("{ring: 'r[*]'}, {from: 'r[0]', to: hub, both: true}"),
+              ElementsAre("r[0] > r[1]", "r[1] > r[2]", "r[2] > r[3]", "r[3] > r[0]", "r[0] > hub", "hub > r[0]"));
+  EXPECT_THAT(links("{ring: 'hub, r[0..3]'}"),
+              ElementsAre("hub > r[0]", "r[0] > r[1]", "r[1] > r[2]", "r[2] > r[3]", "r[3] > hub"));
+  EXPECT_THAT(links("{from: 'r[*]', to: hub, both: true}"),
+              ElementsAre("r[0] > hub", "hub > r[0]", "r[1] > hub", "hub > r[1]", "r[2] > hub", "hub > r[2]",
+                          "r[3] > hub", "hub > r[3]"));
+  EXPECT_THAT(links("{from: 'r[0..1]', to: 'r[2..3]', both: true}, {from: 'r[2]', to: hub, both: true}, "
+                    "{line: 'r[0], hub, r[3]', both: true}"),
+              ElementsAre("r[0] > r[2]", "r[2] > r[0]", "r[1] > r[3]", "r[3] > r[1]", "r[2] > hub", "hub > r[2]",
+                          "r[0] > hub", "hub > r[0]", "hub > r[3]", "r[3] > hub"));
+  EXPECT_THAT(links("{mesh: [2, 2]}, {from: 'r[*]', all_to: hub, both: true}").size(), 16u);
+  EXPECT_THAT(links("{from: 'r[0..2]', all_to: 'r[0..2]'}, {line: 'r[2], r[3], hub', both: true}"),
+              ElementsAre("r[0] > r[1]", "r[0] > r[2]", "r[1] > r[0]", "r[1] > r[2]", "r[2] > r[0]", "r[2] > r[1]",
+                          "r[2] > r[3]", "r[3] > r[2]", "r[3] > hub", "hub > r[3]"));
+}
+
+TEST(GraphConfig, AMeshHasItsNeighboursRowByRow) {
+  EXPECT_THAT(links_of(read("topology: {shape: graph, nodes: [{name: r, count: 6}], links: [{mesh: [3, 2]}]}\n")),
+              ElementsAre("r[0] > r[1]", "r[1] > r[0]", "r[0] > r[3]", "r[3] > r[0]", "r[1] > r[2]", "r[2] > r[1]",
+                          "r[1] > r[4]", "r[4] > r[1]", "r[2] > r[5]", "r[5] > r[2]", "r[3] > r[4]", "r[4] > r[3]",
+                          "r[4] > r[5]", "r[5] > r[4]"));
+}
+
+TEST(GraphConfig, WhatALinkDoesNotSayIsThatOfAllLinks) {
+  const Config config = read(
+      "topology:\n  shape: graph\n  link: {latency_cycles: 7, depth: 3}\n  nodes: [{name: a}, {name: b}]\n"
+      "  links: [{from: a, to: b}, {from: b, to: a, latency_cycles: 2, depth: 5, bytes_per_cycle: 8}]\n");
+  EXPECT_EQ(config.topology.resources, 2);
+  EXPECT_EQ(config.topology.visit, Visit::kOwners);
+  std::vector<config::GraphIssue> issues;
+  const config::Graph graph = config::draw_graph(config.topology, issues);
+  ASSERT_EQ(graph.links.size(), 2u);
+  EXPECT_EQ(graph.links[0].latency_cycles, 7);
+  EXPECT_EQ(graph.links[0].depth, 3);
+  EXPECT_EQ(graph.links[0].bytes_per_cycle, 32);
+  EXPECT_EQ(graph.links[1].latency_cycles, 2);
+  EXPECT_EQ(graph.links[1].depth, 5);
+  EXPECT_EQ(graph.links[1].bytes_per_cycle, 8);
+}
+
+TEST(GraphConfig, ReadsBackAsItIsWritten) {
+  const Config config = read(
+      "topology:\n  shape: graph\n  nodes:\n    - {name: r, count: 4, latency_cycles: 2}\n"
+      "    - {name: hub, kind: router, buffers: 4, forward: whole}\n  links:\n    - {ring: 'r[*]', both: true, depth: "
+      "2}\n"
+      "    - {from: 'r[0]', to: hub, both: true, bytes_per_cycle: 8}\n    - {mesh: [2, 1], of: 'r[0], r[2]'}\n");
+  const std::string text = resolved_yaml(config);
+  const Config again = parse_config(text, "again.yaml");
+  EXPECT_EQ(again.topology.nodes, config.topology.nodes) << text;
+  EXPECT_EQ(again.topology.links, config.topology.links) << text;
+  EXPECT_EQ(resolved_yaml(again), text);
+}
+
+class BadGraph : public testing::TestWithParam<BadConfig> {};
+
+TEST_P(BadGraph, IsRefusedByName) {
+  EXPECT_THAT(texts(issues_of(kHead + GetParam().text)), ElementsAre(HasSubstr(GetParam().message)));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadGraph,
+    testing::Values(
+        BadConfig{"UnknownNode",
+                  "topology:\n  shape: graph\n  nodes: [{name: ring, count: 3}]\n  links:\n    - {ring: 'ring[*]'}\n"
+                  "    - {from: 'rign[0]', to: 'ring[2]'}\n",
+                  "test.yaml:8:14: topology.links.1.from: expected a node, found 'rign'; did you mean 'ring[*]'?"},
+        BadConfig{
+            "BeyondTheGroup",
+            "topology:\n  shape: graph\n  nodes: [{name: r, count: 3}]\n  links: [{ring: 'r[*]'}, {from: 'r[3]', to: "
+            "'r[0]'}]\n",
+            "test.yaml:6:34: topology.links.1.from: expected r[*], or r[i] or r[i..j] with numbers from 0 to 2, "
+            "found 'r[3]'"},
+        BadConfig{"GroupWithoutBrackets",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: r}]}\n",
+                  "r is a group of 3; expected r[*], r[0] or r[0..2], found 'r'"},
+        BadConfig{"NoWay", "topology: {shape: graph, nodes: [{name: a}, {name: b}], links: [{from: a, to: b}]}\n",
+                  "topology.links: there is no way from b to a"},
+        BadConfig{"TwoLinks",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]'}, {from: 'r[1]', to: "
+                  "'r[2]'}]}\n",
+                  "topology.links.1: a second link from r[1] to r[2], beside that of topology.links.0"},
+        BadConfig{
+            "ToItself",
+            "topology: {shape: graph, nodes: [{name: a}, {name: b}], links: [{line: 'a, b', both: true}, {from: a, "
+            "to: a}]}\n",
+            "a link leads from a to a"},
+        BadConfig{"NoLink",
+                  "topology: {shape: graph, nodes: [{name: a}, {name: b}, {name: c}], links: [{line: 'a, b', both: "
+                  "true}]}\n",
+                  "topology.nodes.2: c has no link"},
+        BadConfig{"TwoNames", "topology: {shape: graph, nodes: [{name: a}, {name: a}], links: []}\n",
+                  "topology.nodes.1.name: there is a node or group 'a' already"},
+        BadConfig{"NoName", "topology: {shape: graph, nodes: [{count: 2}], links: []}\n",
+                  "topology.nodes.0: expected the key 'name'"},
+        BadConfig{"BadName", "topology: {shape: graph, nodes: [{name: 'r-1'}], links: []}\n",
+                  "topology.nodes.0.name: expected a letter or _ and then letters, digits and _, found 'r-1'"},
+        BadConfig{"NoNodes", "topology: {shape: graph}\n", "topology.nodes: expected a resource at least"},
+        BadConfig{"NotBuilt", "topology: {shape: graph, nodes: [{name: a}, {name: l2, kind: cache}], links: []}\n",
+                  "topology.nodes.1.kind: a node that is a cache is not built yet"},
+        BadConfig{"UnknownKind", "topology: {shape: graph, nodes: [{name: a, kind: ruoter}], links: []}\n",
+                  "did you mean 'router'?"},
+        BadConfig{"OtherNumber",
+                  "topology: {shape: graph, resources: 8, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]'}]}\n",
+                  "topology.resources: the graph has 2 resources; expected 2, or no number, found 8"},
+        BadConfig{"TwoPatterns",
+                  "topology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]', line: 'r[*]'}]}\n",
+                  "topology.links.0: expected one of from and to, from and all_to, ring, line or mesh"},
+        BadConfig{"MeshOfAnotherSize",
+                  "topology: {shape: graph, nodes: [{name: r, count: 6}], links: [{mesh: [2, 2]}]}\n",
+                  "topology.links.0.mesh: expected as many places as the graph has nodes, 6, found 2 x 2 = 4"},
+        BadConfig{
+            "UnequalSides",
+            "topology: {shape: graph, nodes: [{name: r, count: 5}], links: [{ring: 'r[*]'}, {from: 'r[0..1]', to: "
+            "'r[2..4]'}]}\n",
+            "r[0..1] has 2 nodes and r[2..4] has 3"},
+        BadConfig{"BuffersOfAResource",
+                  "topology: {shape: graph, nodes: [{name: r, count: 2, buffers: 2}], links: [{ring: 'r[*]'}]}\n",
+                  "topology.nodes.0.buffers: only a router has this key"}),
+    [](const auto& one) { return one.param.name; });
+
+TEST(GraphConfig, TheNativeEngineRefusesIt) {
+  const auto issues = texts(issues_of(
+      "scene: {builtin: cornell}\ntopology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]'}]}\n"));
+  EXPECT_THAT(issues, ElementsAre(HasSubstr("topology.shape: the native engine has no graph")));
+}
+
+}  // namespace
+}  // namespace carousel::graph_config_test
