@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kMark = "carousel module of build ";
+constexpr std::string_view kBuildMark = "carousel module of build ";
 
 /// A module that this version can use: the package that holds it, and the package to build it with.
 struct Known {
@@ -44,7 +44,7 @@ std::string remedy(const std::string& name) {
 
 /// A module_build() without the words around it.
 std::string bare(std::string_view build) {
-  build.remove_prefix(std::min(kMark.size(), build.size()));
+  build.remove_prefix(std::min(kBuildMark.size(), build.size()));
   return plain_text(build.substr(0, build.find('\n')));
 }
 
@@ -55,7 +55,7 @@ std::string fault_of(const fs::path& file) {
   if (!in) return std::strerror(errno);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};
   if (bytes.find(module_build()) != bytes.npos) return "";
-  const std::size_t at = bytes.find(kMark);
+  const std::size_t at = bytes.find(kBuildMark);
   if (at == bytes.npos) return "it is no module of Carousel";
   return fmt::format("it is of the build {}; expected that of this program, {}", bare(bytes.substr(at, 256)),
                      bare(module_build()));

@@ -24,7 +24,7 @@ namespace carousel::scene {
 namespace {
 
 /// Bytes that OpenEXR keeps for each pixel beside the picture while it reads one, at most: a tiled picture as a whole.
-constexpr std::uint64_t kWorkPerPixel = 16;
+constexpr std::uint64_t kExrWorkPerPixel = 16;
 
 /// Lets OpenEXR read the bytes, and keeps the place at which it reads for the message of a fault.
 class MemoryStream : public Imf::IStream {
@@ -89,7 +89,7 @@ FloatImage decode_exr(std::span<const unsigned char> encoded, MemoryBudget& memo
           fmt::format("has {} x {} pixels; expected 1 to {} each", window.width, window.height, kMostSide));
     const std::uint64_t pixels = static_cast<std::uint64_t>(window.width) * static_cast<std::uint64_t>(window.height);
     try {
-      work = memory.lend(pixels * kWorkPerPixel);
+      work = memory.lend(pixels * kExrWorkPerPixel);
       memory.take(pixels * kFloatPixelBytes);
     } catch (const std::length_error& error) {
       throw std::length_error(fmt::format("of {} x {} pixels {}", window.width, window.height, error.what()));
