@@ -62,7 +62,7 @@ class TrafficRun {
     std::vector<const Agent*> agents;
     for (const auto& node : nodes_) agents.push_back(node.get());
     channels_.connect(wakeups, agents);
-    run_windows(parts, wakeups, least_latency(), [&](Cycle reached) {
+    run_windows(parts, wakeups, std::min(link_latency(), channels_.least_latency()), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -85,15 +85,6 @@ class TrafficRun {
   static constexpr std::uint64_t kAckBytes = 4;  // source and direction
 
   Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
-  /// Of any link.
-  Cycle least_latency() const {
-    Cycle least = link_latency();
-    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
-      const auto latency = static_cast<Cycle>(topology_.wires()[i].latency_cycles);
-      least = i == 0 ? latency : std::min(least, latency);
-    }
-    return least;
-  }
 
   /// The nodes of a graph: resources, which have sources, and routers.
   void add_routed(const TrafficNodeSettings& settings) {
