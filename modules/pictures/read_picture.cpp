@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
 #include "modules/pictures/picture_file.h"
@@ -44,27 +45,44 @@ std::string format_of_ending(const std::string& name) {
   return "";
 }
 
+/// A picture that is open: its bytes, and a file of them for the formats that read nothing else.
 struct Opened {
-  std::unique_ptr<OIIO::ImageInput> input;
+  std::unique_ptr<OIIO::Filesystem::IOMemReader> bytes;
+  std::unique_ptr<MemoryFile> file;
+  std::unique_ptr<OIIO::ImageInput> input;  // closed before the others
   OIIO::ImageSpec spec;
 };
 
+/// Some readers choose by the ending of the name, which then has to be one of the format.
+std::string ending_of(const std::string& format, std::string_view bytes) {
+  if (format == "jpeg2000") return bytes.starts_with("\xff\x4f") ? ".j2k" : ".jp2";
+  return "." + format;
+}
+
 /// By the format that the first bytes tell, or else by that of the ending. Photographs of cameras begin as TIFF does.
-Opened open(const MemoryFile& file, const std::string& format, const std::string& name) {
+Opened open(std::string_view bytes, const std::string& format, const std::string& name) {
   OIIO::ImageSpec wish;
   wish["oiio:UnassociatedAlpha"] = 1;  // colours as the file has them, not multiplied by alpha
   std::string why;
   for (const std::string& each : {format, format_of_ending(name)}) {
     if (each.empty() || each == "null" || each == "term") continue;
-    Opened out{OIIO::ImageInput::create(each), {}};
+    Opened out;
+    out.input = OIIO::ImageInput::create(each);
     if (!out.input) {
       why = "this OpenImageIO was built without the format " + each;
       OIIO::geterror();
-    } else if (out.input->open(file.name(), out.spec, wish)) {
-      return out;
-    } else if (why.empty()) {
-      why = "broken: " + without_newlines(out.input->geterror());
+      continue;
     }
+    std::string file = "picture" + ending_of(each, bytes);
+    if (out.input->supports("ioproxy")) {
+      out.bytes = std::make_unique<OIIO::Filesystem::IOMemReader>(const_cast<char*>(bytes.data()), bytes.size());
+      out.input->set_ioproxy(out.bytes.get());
+    } else {
+      out.file = std::make_unique<MemoryFile>(bytes);
+      file = out.file->name();
+    }
+    if (out.input->open(file, out.spec, wish)) return out;
+    if (why.empty()) why = "broken: " + without_newlines(out.input->geterror());
   }
   throw std::runtime_error(why);
 }
@@ -78,9 +96,11 @@ Channels channels_of(const OIIO::ImageSpec& spec) {
   Channels out;
   if (spec.alpha_channel >= 0 && spec.alpha_channel < spec.nchannels) out.alpha = spec.alpha_channel;
   if (spec.nchannels >= 3) out = {0, 1, 2, out.alpha};
+  // Not spec.channelindex(), which ends the process where a reader names none.
   const auto find = [&](const char* name, int& channel) {
-    const int at = spec.channelindex(name);
-    if (at >= 0 && at < spec.nchannels) channel = at;
+    const auto at = std::find(spec.channelnames.begin(), spec.channelnames.end(), name);
+    if (at != spec.channelnames.end() && at - spec.channelnames.begin() < spec.nchannels)
+      channel = static_cast<int>(at - spec.channelnames.begin());
   };
   find("R", out.red);
   find("G", out.green);
@@ -109,13 +129,17 @@ bool equal_words(std::string_view one, std::string_view other) {
 /// The pixels of a row as Image::rgba has them.
 class Rows {
  public:
-  Rows(const OIIO::ImageSpec& spec, bool color) : channels_(channels_of(spec)), count_(spec.nchannels) {
-    multiplied_ = channels_.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0;
+  Rows(const OIIO::ImageSpec& spec, bool color, std::string_view format)
+      : channels_(channels_of(spec)), count_(spec.nchannels) {
+    // Other readers, that of DDS for one, give colours as they are stored, without a word.
+    constexpr std::string_view kMultiplied[] = {"openexr", "tiff", "rla", "targa", "psd"};
+    multiplied_ = channels_.alpha >= 0 && spec.get_int_attribute("oiio:UnassociatedAlpha", 0) == 0 &&
+                  std::ranges::find(kMultiplied, format) != std::end(kMultiplied);
     if (!color) return;
     const std::string space = spec.get_string_attribute("oiio:ColorSpace");
     const bool floats = spec.format.is_floating_point();
     if (equal_words(space, "linear") || equal_words(space, "lin_srgb") || equal_words(space, "scene_linear") ||
-        (space.empty() && floats))
+        (space.empty() && floats) || (format == "pnm" && floats))  // PFM: OpenImageIO calls it Rec709, as all of PNM
       curve_ = Curve::kLinear;
     if (space.starts_with("Gamma")) {
       curve_ = Curve::kPower;
@@ -202,11 +226,10 @@ std::string read_picture(std::string_view text) {
     throw std::runtime_error("broken: no question");
   const std::string format(text.substr(0, question.format_bytes));
   const std::string name(text.substr(question.format_bytes, question.name_bytes));
-  const MemoryFile file(text.substr(std::size_t{question.format_bytes} + question.name_bytes));
   OIIO::attribute("threads", 1);
   OIIO::attribute("exr_threads", 1);
 
-  const Opened opened = open(file, format, name);
+  const Opened opened = open(text.substr(std::size_t{question.format_bytes} + question.name_bytes), format, name);
   const OIIO::ImageSpec& spec = opened.spec;
   if (spec.deep) throw std::runtime_error("of deep pixels, which no texture has");
   if (spec.width <= 0 || spec.height <= 0 || spec.nchannels <= 0 || spec.nchannels > kMostChannels)
@@ -219,7 +242,7 @@ std::string read_picture(std::string_view text) {
   if (answer.work + 4 * pixels > question.memory) return with_answer({}, answer);
 
   std::string out(static_cast<std::size_t>(pixels * 4), '\0');
-  const Rows rows(spec, question.color);
+  const Rows rows(spec, question.color, opened.input->format_name());
   if (bytes)
     read_rows<std::uint8_t>(*opened.input, spec, OIIO::TypeDesc::UINT8, rows, out);
   else if (shorts)

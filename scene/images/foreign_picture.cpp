@@ -1,5 +1,6 @@
 #include "scene/images/foreign_picture.h"
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <mutex>
@@ -35,7 +36,9 @@ Image decode_foreign_picture(std::span<const unsigned char> encoded, const Pictu
   const std::array<std::string_view, 4> parts{
       bytes_of(question), format.name, hint.name, {reinterpret_cast<const char*>(encoded.data()), encoded.size()}};
   Image image;
-  image.rgba = process.ask(parts, [&](std::uint64_t bytes) { memory.take(bytes); });
+  image.rgba = process.ask(parts, [&](std::uint64_t bytes) {
+    memory.take(bytes - std::min<std::uint64_t>(bytes, sizeof(PictureAnswer)));  // without pixels it takes none
+  });
   PictureAnswer answer;
   if (image.rgba.size() < sizeof answer) throw std::runtime_error("broken: the module gave no picture");
   std::memcpy(&answer, image.rgba.data() + image.rgba.size() - sizeof answer, sizeof answer);

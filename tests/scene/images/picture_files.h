@@ -32,11 +32,8 @@ inline const std::string kGradient =
 class PictureFiles : public testing::Test {
  protected:
   void SetUp() override {
-    try {
-      module_file("pictures");
-    } catch (const ModuleError& error) {
-      GTEST_SKIP() << error.what();
-    }
+    // Where it is refused the tests fail.
+    if (!std::filesystem::exists(module_folder() / "pictures.so")) GTEST_SKIP() << "the module pictures is not there";
     if (std::system("oiiotool --version >/dev/null 2>&1") != 0)
       GTEST_SKIP() << "oiiotool is missing (openimageio-tools)";
     std::string name = (std::filesystem::temp_directory_path() / "carousel_pictures_XXXXXX").string();
