@@ -135,7 +135,7 @@ TEST_F(SkyMapRun, ABakedSkyLightsEachFaceAsItsClosedForm) {
   }
 }
 
-TEST_F(SkyMapRun, ARaysOfTheCameraSeeTheMapItself) {
+TEST_F(SkyMapRun, RaysOfTheCameraSeeTheMapItself) {
   program_.write("box.gltf", white_box(false));
   const Sky ramp = [](const DVec3& w) { return Vec3(DVec3{2 + w.x, 2 + w.y, 2 + w.z}); };
   bake(program_.folder() / "ramp.exr", ramp, 512, -30);
@@ -147,7 +147,7 @@ TEST_F(SkyMapRun, ARaysOfTheCameraSeeTheMapItself) {
     run("a.yaml", {fmt::format("camera={{eye: [{}, {}, {}], target: [{}, {}, {}], field_of_view: 1}}", eye.x, eye.y,
                                eye.z, 2 * eye.x, 2 * eye.y, 2 * eye.z)});
     const DVec3 found = mean(picture()), expected = 2.0 * DVec3(ramp(glm::normalize(to)));
-    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.01) << to.x << " " << to.y << " " << to.z;
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(found[c], expected[c], 0.02) << to.x << " " << to.y << " " << to.z;
   }
 }
 
