@@ -63,7 +63,7 @@ class HdrReader {
   std::size_t at_ = 0;
 };
 
-std::string shown(std::string_view text) {
+std::string header_text(std::string_view text) {
   return plain_text(std::string(text.substr(0, kShownText)));
 }
 
@@ -82,7 +82,7 @@ void HdrReader::variable(std::string_view text, std::size_t at, Header& header) 
   while (!value.empty() && (value.front() == ' ' || value.front() == '\t')) value.remove_prefix(1);
   while (!value.empty() && (value.back() == ' ' || value.back() == '\r')) value.remove_suffix(1);
   if (name == "FORMAT" && value != kFormat)
-    fail(at, fmt::format("expected FORMAT={}, found '{}'", kFormat, shown(value)));
+    fail(at, fmt::format("expected FORMAT={}, found '{}'", kFormat, header_text(value)));
   if (name == "COLORCORR") fail(at, "its colours are corrected (COLORCORR); expected a picture without it");
   if (name != "EXPOSURE") return;
   double factor = 0;
@@ -90,7 +90,7 @@ void HdrReader::variable(std::string_view text, std::size_t at, Header& header) 
   header.exposure *= factor;
   if (error != std::errc{} || end != value.data() + value.size() || !(factor > 0) || !(header.exposure > 1e-30) ||
       !(header.exposure < 1e30))
-    fail(at, fmt::format("expected EXPOSURE with a positive number, found '{}'", shown(value)));
+    fail(at, fmt::format("expected EXPOSURE with a positive number, found '{}'", header_text(value)));
 }
 
 HdrReader::Header HdrReader::header() {
@@ -113,7 +113,7 @@ HdrReader::Header HdrReader::header() {
   std::string_view rest = size;
   if (!number(rest, "-Y ", out.height) || !number(rest, " +X ", out.width) || !(rest.empty() || rest == "\r"))
     fail(at, fmt::format("expected the size as '-Y height +X width' (rows from the top left, 1 to {} each), found '{}'",
-                         kMostSide, shown(size)));
+                         kMostSide, header_text(size)));
   return out;
 }
 
