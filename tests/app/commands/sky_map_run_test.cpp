@@ -198,6 +198,7 @@ TEST_F(SkyMapRun, GivesTheSamePictureOnEveryMachine) {
 }
 
 TEST_F(SkyMapRun, IsAnEffectThatIsProvedAndCharged) {
+  program_.write("box.gltf", white_box(true));
   program_.write("a.hdr", hdr_file(16, 8, [](int x, int y) { return Vec3{float(x), float(y), 1}; }));
   program_.write("a.yaml",
                  "scene: {file: box.gltf, sky: {file: a.hdr}}\nengine: {kind: cycle, what_if: false}\n"
@@ -232,6 +233,7 @@ TEST_F(SkyMapRun, IsAnEffectThatIsProvedAndCharged) {
 }
 
 TEST_F(SkyMapRun, BytesOfTheMapComeFromMemory) {
+  program_.write("box.gltf", white_box(true));
   program_.write("a.hdr", hdr_file(128, 64, [](int x, int y) { return Vec3{float(x), float(y), 1}; }));
   program_.write("a.yaml",
                  "scene: {file: box.gltf, sky: {file: a.hdr}}\nengine: {kind: cycle, what_if: false}\n"
