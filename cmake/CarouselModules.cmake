@@ -55,3 +55,12 @@ if(MPI_CXX_FOUND)
 else()
   message(STATUS "No module mpi: libopenmpi-dev is missing; engine.transport: mpi needs it")
 endif()
+
+# -- scenes: Assimp
+find_package(assimp CONFIG QUIET)
+if(assimp_FOUND)
+  carousel_module(scenes SOURCES modules/scenes/scenes_module.cpp modules/scenes/read_scene.cpp
+                  modules/scenes/material_map.cpp modules/scenes/source_files.cpp LIBRARIES assimp::assimp)
+else()
+  message(STATUS "No module scenes: libassimp-dev is missing; glTF needs none")
+endif()

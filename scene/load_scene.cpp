@@ -8,6 +8,7 @@
 #include "core/system/error.h"
 #include "scene/builtin/builtin.h"
 #include "scene/gltf/import.h"
+#include "scene/import/import_file.h"
 #include "scene/load_sky.h"
 #include "scene/model/camera_pose.h"
 #include "scene/model/fitted_camera.h"
@@ -44,8 +45,14 @@ std::optional<PoseChoice> pose_of(const SceneConfig& config) {
 Scene load_file(const SceneConfig& config, const std::filesystem::path& config_dir, const WarningSink& warn,
                 const ImageChoice& images, Executor* executor) {
   const std::optional<PoseChoice> pose = pose_of(config);
-  Scene scene =
-      load_gltf(find_file("scene.file", "a glTF file", config.file, config_dir), warn, images, pose, executor);
+  const std::filesystem::path file = find_file("scene.file", "a scene file", config.file, config_dir);
+  if (!is_gltf(file)) {
+    if (pose)
+      throw ConfigError(config.animation ? "scene.animation" : "scene.time",
+                        config.file + " is no glTF file; files of other formats are shown in their base pose");
+    return SceneImporter().load(file, warn, images);
+  }
+  Scene scene = load_gltf(file, warn, images, pose, executor);
   if (pose && !scene.motion.any() && warn)
     warn(config.file + ": has no animations, skins or morph targets; scene.time changes nothing");
   return scene;

@@ -46,10 +46,10 @@ void check_name(const std::string& name) {
   std::error_code ignored;
   if (name.starts_with(kBuiltin) || std::filesystem::is_regular_file(name, ignored)) return;
   const auto fail = [&](const std::string& why) { throw FileError(fmt::format("{}: {}", name, why)); };
-  if (std::filesystem::is_directory(name, ignored)) fail("is a folder; expected a glTF file");
+  if (std::filesystem::is_directory(name, ignored)) fail("is a folder; expected a scene file");
   if (enum_value<BuiltinScene>(name))
     fail(fmt::format("no such file; the built-in scene is carousel inspect {}{}", kBuiltin, name));
-  fail(fmt::format("no such file; expected a glTF file, or {}NAME with one of {}", kBuiltin,
+  fail(fmt::format("no such file; expected a scene file, or {}NAME with one of {}", kBuiltin,
                    fmt::join(config::enum_values("scene.builtin"), ", ")));
 }
 

@@ -81,9 +81,9 @@ TEST(Messages, SceneThatIsNotThereIsNamedWithItsPlace) {
   const Program program;
   program.write("a.yaml", "image: {width: 8}\nscene:\n  file: none.glb\n");
   EXPECT_THAT(program.run({"run", "a.yaml"}).err,
-              HasSubstr("error: a.yaml:3:9: scene.file: expected a glTF file, found 'none.glb', which is not there"));
+              HasSubstr("error: a.yaml:3:9: scene.file: expected a scene file, found 'none.glb', which is not there"));
   std::filesystem::create_directory(program.folder() / "none.glb");
-  EXPECT_THAT(program.run({"run", "a.yaml"}).err, HasSubstr("a.yaml:3:9: scene.file: expected a glTF file, found "
+  EXPECT_THAT(program.run({"run", "a.yaml"}).err, HasSubstr("a.yaml:3:9: scene.file: expected a scene file, found "
                                                             "'none.glb', which is a folder"));
 }
 
@@ -93,7 +93,7 @@ TEST(Messages, InspectPointsToABuiltInScene) {
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.err, HasSubstr("cornell: no such file; the built-in scene is carousel inspect builtin:cornell"));
   EXPECT_THAT(program.run({"inspect", "."}).err, HasSubstr(".: is a folder"));
-  EXPECT_THAT(program.run({"inspect", "none.glb"}).err, HasSubstr("none.glb: no such file; expected a glTF file, or"));
+  EXPECT_THAT(program.run({"inspect", "none.glb"}).err, HasSubstr("none.glb: no such file; expected a scene file, or"));
 }
 
 TEST(Messages, InspectCountsWhatTheFileHas) {

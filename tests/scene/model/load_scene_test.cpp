@@ -170,7 +170,7 @@ TEST(LoadScene, MissingFileNamesBothPlaces) {
   } catch (const ConfigError& e) {
     EXPECT_STREQ(
         e.what(),
-        "scene.file: expected a glTF file, found 'nowhere.glb', which is not there; looked in 'configs' and in "
+        "scene.file: expected a scene file, found 'nowhere.glb', which is not there; looked in 'configs' and in "
         "the working directory");
   }
 }

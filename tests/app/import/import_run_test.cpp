@@ -1,0 +1,93 @@
+// Scene files of other formats, run as a user runs them.
+#include <cstdlib>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "core/module/module.h"
+#include "tests/app/support/program.h"
+#include "tests/scene/gltf/gltf_builder.h"
+
+namespace carousel::import_run_test {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+/// A roof of two squares over a floor, in both formats, with the same triangles in the same order.
+const char* const kRoof =
+    "mtllib roof.mtl\no Roof\nv -1 0 0\nv 0 1 0\nv 0 1 2\nv -1 0 2\nv 1 0 0\nv 1 0 2\nusemtl m\n"
+    "f 1 2 3\nf 1 3 4\nf 2 5 6\nf 2 6 3\nf 1 4 6\nf 1 6 5\n";
+
+std::string roof_as_gltf() {
+  scene::GltfBuilder b;
+  const int positions = b.floats({-1, 0, 0, 0, 1, 0, 0, 1, 2, -1, 0, 2, 1, 0, 0, 1, 0, 2}, "VEC3", 3);
+  const int indices = b.accessor(
+      b.view(std::vector<std::uint16_t>{0, 1, 2, 0, 2, 3, 1, 4, 5, 1, 5, 2, 0, 3, 5, 0, 5, 4}), 5123, 18, "SCALAR");
+  b.push("materials", {{"doubleSided", true},
+                       {"pbrMetallicRoughness",
+                        {{"baseColorFactor", {0.5, 0.25, 0.75, 1}}, {"metallicFactor", 0}, {"roughnessFactor", 1}}}});
+  b.mesh({{"POSITION", positions}}, indices, {{"material", 0}});
+  return b.text();
+}
+
+class ImportRun : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(module_folder() / "scenes.so")) GTEST_SKIP() << "built without libassimp-dev";
+    program_.write("roof.obj", kRoof);
+    program_.write("roof.mtl", "newmtl m\nKd 0.5 0.25 0.75\n");
+    program_.write("roof.gltf", roof_as_gltf());
+    program_.write("roof.yaml",
+                   "scene: {file: roof.gltf}\nimage: {width: 24, height: 16, samples: 2, max_depth: 4}\n"
+                   "camera: {eye: [2, 3, 6], target: [0, 0.5, 1]}\n");
+  }
+
+  Program program_;
+};
+
+TEST_F(ImportRun, ObjAndGltfOfOneModelGiveTheSameHitsAndPicture) {
+  ASSERT_EQ(program_.run({"run", "roof.yaml", "--hits", "--out", "gltf"}).status, 0);
+  const Outcome obj = program_.run({"run", "roof.yaml", "--hits", "--set", "scene.file=roof.obj", "--out", "obj"});
+  ASSERT_EQ(obj.status, 0) << obj.err;
+  EXPECT_GT(program_.read("gltf/hits.csv").size(), 10000u);
+  EXPECT_EQ(program_.read("gltf/hits.csv"), program_.read("obj/hits.csv"));
+  EXPECT_EQ(program_.read("gltf/image.png"), program_.read("obj/image.png"));
+}
+
+TEST_F(ImportRun, InspectListsAndFramesOtherFormatsToo) {
+  const Json listing = Json::parse(program_.run({"inspect", "roof.obj", "--json"}).out);
+  EXPECT_EQ(listing["scene"]["triangles"], 6);
+  EXPECT_EQ(listing["scene"]["materials"], 1);
+  EXPECT_EQ(listing["bounds"]["max"], Json({1, 1, 2}));
+  const Outcome framed = program_.run({"inspect", "roof.obj", "--frame", "Roof"});
+  EXPECT_EQ(framed.status, 0) << framed.err;
+  EXPECT_THAT(framed.out, HasSubstr("camera:\n  eye: ["));
+}
+
+TEST_F(ImportRun, FaultsEndWithStatus2AndTheFile) {
+  program_.write("bad.ply", "ply\nformat ascii 1.0\nelement vertex 2\n");
+  const Outcome bad = program_.run({"run", "roof.yaml", "--set", "scene.file=bad.ply"});
+  EXPECT_EQ(bad.status, 2);
+  EXPECT_THAT(bad.err, HasSubstr("bad.ply: "));
+  const Outcome moment = program_.run({"run", "roof.yaml", "--set", "scene={file: roof.obj, time: 1}"});
+  EXPECT_EQ(moment.status, 2);
+  EXPECT_THAT(moment.err, HasSubstr("scene.time: roof.obj is no glTF file; files of other formats are shown in their "
+                                    "base pose"));
+}
+
+TEST_F(ImportRun, WithoutTheModuleTheErrorNamesThePackage) {
+  std::filesystem::create_directory(program_.folder() / "none");
+  setenv("CAROUSEL_MODULES", (program_.folder() / "none").c_str(), 1);
+  const Outcome outcome = program_.run({"run", "roof.yaml", "--set", "scene.file=roof.obj"});
+  const Outcome gltf = program_.run({"run", "roof.yaml", "--out", "out"});
+  unsetenv("CAROUSEL_MODULES");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("the module scenes is not there"));
+  EXPECT_THAT(outcome.err, HasSubstr("libassimp-dev"));
+  EXPECT_EQ(gltf.status, 0) << "glTF needs no module";
+}
+
+}  // namespace
+}  // namespace carousel::import_run_test
