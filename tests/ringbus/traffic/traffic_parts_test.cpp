@@ -8,6 +8,7 @@
 #include "ringbus/cycle/traffic/delivery_credits.h"
 #include "ringbus/cycle/traffic/source_queues.h"
 #include "ringbus/cycle/traffic/traffic_sink.h"
+#include "tests/ringbus/time/loose_channel.h"
 #include "tests/ringbus/traffic/traffic_config.h"
 
 namespace carousel::ringbus::cycle {
@@ -44,7 +45,7 @@ struct CreditsOfARing {
     return with_depth;
   }();
   Topology topology{config.topology};
-  Channel<TrafficAck> in, out;
+  LooseChannel<TrafficAck> in, out;
   TrafficNodeSettings settings{.link_latency = 4, .link_depth = 2};
   DeliveryCredits credits{ResourceId(1), topology, settings, {&in}, {&out}};
 };
