@@ -24,7 +24,7 @@ Bytes damaged(Bytes bytes, std::mt19937& random) {
   return bytes;
 }
 
-// OpenImageIO 2.4.7 may break down over some (CVE-2023-22845), which takes the process that reads, and nothing else.
+// OpenImageIO may break down over some, which takes the process that reads, and nothing else.
 TEST_F(DamagedPicture, IsReadOrRefused) {
   tool(kGradient +
        " -d uint8 -o a.tif --tile 16 16 --compression lzw -o b.tif --scanline --compression rle -o a.tga --compression "
