@@ -65,6 +65,10 @@ DrawnShape draw_shape(const TopologyConfig& config) {
         GraphLink& all = out.config.links.emplace_back();
         all.from = all.all_to = "r[*]";
       }
+      out.same = topology.resources() != 2;
+      out.difference =
+          "two resources of the shape have room for all packets, and two of the graph, which are a ring, "
+          "have credits";
       break;
     case TopologyShape::kMultiRing:
       out.possible = out.same = false;
