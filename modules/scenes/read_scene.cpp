@@ -195,6 +195,14 @@ class SceneReader {
     to.znear = from.mClipPlaneNear;
     // The importers give the whole angle, though the header speaks of half of it.
     const float half = 0.5f * from.mHorizontalFOV;
+    // Assimp 5.2 does not read the angle of a COLLADA file, and takes its default of 45 degrees for radians.
+    constexpr float kLost = 0.0138f;
+    if (from.mOrthographicWidth == 0 && from.mHorizontalFOV < kLost) {
+      to_.warnings.push_back("the angle of view of the camera \"" + to.name +
+                             "\" cannot be read; camera.field_of_view gives it one");
+      to.yfov = 0;
+      return to_.cameras.push_back(to);
+    }
     to.yfov = from.mAspect > 0 ? 2 * std::atan(std::tan(half) / from.mAspect) : from.mHorizontalFOV;
     to_.cameras.push_back(to);
   }

@@ -29,7 +29,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Seconds of the processor that the module gets, besides one for each MiB of the file.
-constexpr std::uint64_t kSeconds = 60;
+constexpr std::uint64_t kSeconds = 10;
 
 /// Which images are colours, by their use.
 std::vector<bool> read_as_colors(const Scene& scene) {

@@ -94,7 +94,7 @@ TEST(PoseDamage, FaultsOfSkinsAreNamed) {
         b.json["nodes"][1]["scale"] = {3e38, 3e38, 3e38};
         b.json["nodes"][2]["scale"] = {9, 9, 9};
       },
-      at, "the pose moves vertex 4 farther than single precision reaches");
+      at, "the pose moves vertex 3 farther than single precision reaches");
 }
 
 TEST(PoseDamage, FaultsOfMorphTargetsAreNamed) {
