@@ -59,6 +59,11 @@ void check_graph(const Config& config, const RuleBreach& breach) {
            fmt::format("each result begins a cycle of its own, which is counted for links as wide as topology.link; "
                        "{} is {} bytes wide; expected mask or implied_order, found {}",
                        graph.name_of(*narrow), narrow->bytes_per_cycle, enum_name(config.packets.results)));
+  const auto shallow = std::ranges::find_if(graph.links, [](const Graph::Link& link) { return link.depth < 2; });
+  if (c.flow == Flow::kBubble && shallow != graph.links.end() && c.link.depth >= 2)
+    breach(fmt::format("topology.links.{}.depth", shallow->entry),
+           fmt::format("flow: bubble keeps one place of a link free; expected at least 2 for {}, found {}",
+                       graph.name_of(*shallow), shallow->depth));
   for (GraphIssue& issue : issues) breach(issue.key, std::move(issue.message));
 }
 

@@ -66,7 +66,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:31: cull_planes.shared_normals: expected true or false, found 'yes'"},
         BadConfig{"EnumName", SCENE "topology: {shape: rign}\n",
                   "test.yaml:2:19: topology.shape: expected one of ring, bidirectional, multi_ring, hierarchical, "
-                  "point_to_point, bus, central, independent, found 'rign'; did you mean 'ring'?"},
+                  "point_to_point, bus, central, independent, graph, found 'rign'; did you mean 'ring'?"},
         BadConfig{"Threads", SCENE "engine: {threads: many}\n",
                   "test.yaml:2:19: engine.threads: expected auto or an integer from 1 to 1024 (threads), "
                   "found 'many'"},

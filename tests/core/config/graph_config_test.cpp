@@ -133,6 +133,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"BadName", "topology: {shape: graph, nodes: [{name: 'r-1'}], links: []}\n",
                   "topology.nodes.0.name: expected a letter or _ and then letters, digits and _, found 'r-1'"},
         BadConfig{"NoNodes", "topology: {shape: graph}\n", "topology.nodes: expected a resource at least"},
+        BadConfig{"BubbleInALinkOfOnePlace",
+                  "topology: {shape: graph, flow: bubble, nodes: [{name: r, count: 3}],\n"
+                  "  links: [{ring: 'r[*]', depth: 4}, {from: 'r[0]', to: 'r[2]', depth: 1}]}\n",
+                  "topology.links.1.depth: flow: bubble keeps one place of a link free; expected at least 2 for r[0] > "
+                  "r[2], found 1"},
         BadConfig{"NotBuilt", "topology: {shape: graph, nodes: [{name: a}, {name: l2, kind: cache}], links: []}\n",
                   "topology.nodes.1.kind: a node that is a cache is not built yet"},
         BadConfig{"UnknownKind", "topology: {shape: graph, nodes: [{name: a, kind: ruoter}], links: []}\n",

@@ -73,7 +73,7 @@ std::vector<Factor> network() {
       {"topology.links",
        {R"([{"ring": "r[*], x"}])",
         R"([{"from": "r[*]", "to": "x", "both": true, "bytes_per_cycle": 8},
-            {"line": "r[0..3]", "both": true, "depth": 1}])"},
+            {"line": "r[0..3]", "both": true, "depth": 2}])"},
        {"topology.shape=graph"}},
       {"topology.form", all<CentralForm>(), {"topology.shape=central"}},
       {"testers.distributor.testers", {"1", "5"}, {"topology.form=distributor"}},
