@@ -252,7 +252,9 @@ TEST(Extending, APartSaysWhatIsRelaxedAndWhatItCosts) {
   config::describe(keys, prefetch);
   const decltype(keys.found) expected{{"lines", "prefetch"}};
   EXPECT_EQ(keys.found, expected);
-  const Config none, machine = load_config({"engine: {kind: cycle}\nenergy: {profile: n45}\n", "own.yaml"}).config;
+  const Config none,
+      machine = load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\nenergy: {profile: n45}\n", "own.yaml"})
+                    .config;
   EXPECT_EQ(ringbus::cycle::area_mm2(prefetch, none), 0);
   prefetch.streams = 64;  // a KiB
   EXPECT_FLOAT_EQ(static_cast<float>(ringbus::cycle::area_mm2(prefetch, machine)), 0.00456f);
