@@ -70,6 +70,11 @@ if(DPKG_QUERY)
   # Where /lib is a link to /usr/lib, packages list one name and the loader another. A pattern in their place takes seconds.
   set(named ${loaded})
   list(TRANSFORM named PREPEND /usr)
+  # What alternatives provide, as LAPACK, is a link that no package owns to a file of one.
+  foreach(library IN LISTS loaded)
+    file(REAL_PATH ${library} real)
+    list(APPEND named ${real})
+  endforeach()
   execute_process(COMMAND ${DPKG_QUERY} -S ${loaded} ${named} OUTPUT_VARIABLE owners ERROR_QUIET)
   string(REGEX MATCHALL "(^|\n)[a-z0-9.+-]+" shared "${owners}")
   list(TRANSFORM shared STRIP)

@@ -266,7 +266,8 @@ Imported read_scene(const std::string& file) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
   const aiScene* const scene =
       importer.ReadFile(file, aiProcess_Triangulate | aiProcess_FlipUVs | aiProcess_JoinIdenticalVertices |
-                                  aiProcess_GenUVCoords | aiProcess_FindInvalidData | aiProcess_ValidateDataStructure);
+                                  aiProcess_GenUVCoords | aiProcess_FindInvalidData | aiProcess_ValidateDataStructure |
+                                  aiProcess_RemoveRedundantMaterials);  // Assimp adds one that nothing has
   const std::vector<SourceFiles::Missing> missing = files.missing();
   if (scene == nullptr) {
     std::string message = importer.GetErrorString();

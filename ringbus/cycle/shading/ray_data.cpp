@@ -31,10 +31,10 @@ RayData::RayData(const Settings& settings, const Workload& workload, const std::
   for (const SidePorts& cache : caches) ports_.emplace_back(of_shared_cache(memory_), settings.link, cache);
 }
 
-bool RayData::wanted(const MemoryConfig& memory) {
+bool RayData::wanted(const MemoryConfig& memory, bool has_sky_map) {
   constexpr auto kInMemory = MemoryConfig::ShadingData::kMemory;
   return memory.ray_records == MemoryConfig::RayRecords::kMaster || memory.path_state == kInMemory ||
-         memory.film == kInMemory || memory.sky_map == kInMemory;
+         memory.film == kInMemory || (has_sky_map && memory.sky_map == kInMemory);
 }
 
 // ---- places

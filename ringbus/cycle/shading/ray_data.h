@@ -44,8 +44,8 @@ class RayData {
 
   /// `caches`: the channels to each L2 and back. Keeps a reference to the workload.
   RayData(const Settings& settings, const Workload& workload, const std::vector<SidePorts>& caches);
-  /// Tells whether the configuration keeps any such data in memory.
-  static bool wanted(const MemoryConfig& memory);
+  /// Tells whether the configuration keeps any such data in memory. A sky without a map has none.
+  static bool wanted(const MemoryConfig& memory, bool has_sky_map);
 
   bool keeps_records() const { return memory_.ray_records == MemoryConfig::RayRecords::kMaster; }
   bool keeps_states() const { return memory_.path_state == MemoryConfig::ShadingData::kMemory; }

@@ -17,7 +17,7 @@ struct MachineKinds {
 };
 
 /// `distributor`: null, unless the machine's testers stand behind one.
-MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const MemoryConfig& memory,
+MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const MemoryConfig& memory, bool has_sky_map,
                            const TestersConfig::Distributor* distributor, Traversal traversal);
 
 }  // namespace carousel::ringbus::cycle

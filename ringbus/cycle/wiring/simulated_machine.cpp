@@ -55,9 +55,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                               accel, shape_memory_, static_cast<std::uint64_t>(config.collections.block_bytes))
                         : nullptr),
       network_(channels_, shared_, config.topology.link, config.faults, config.testers.contexts),
-      kinds_(machine_kinds(channels_, config.topology.link, config.memory,
-                           has_distributor(config) ? &config.testers.distributor : nullptr,
-                           config.collections.traversal)),
+      kinds_(machine_kinds(
+          channels_, config.topology.link, config.memory, config.scene.sky && !config.scene.sky->file.empty(),
+          has_distributor(config) ? &config.testers.distributor : nullptr, config.collections.traversal)),
       numbers_(agent_numbers(shared_.topology, config.memory)) {
   const SideLatencies latencies(config.topology.link, ShapeCache::nearest(config.memory));
   if (observed.timeline.most > 0 || observed.ray != nullptr)

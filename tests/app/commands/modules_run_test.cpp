@@ -71,7 +71,9 @@ TEST(ModulesOfARun, NoneIsOpenedWithoutNeed) {
   // 22 beside the loader when the modules came. One more is a cost of every start: it belongs into a module, or here.
   EXPECT_LE(version.size(), 22u) << testing::PrintToString(version);
   EXPECT_GT(version.size(), 10u);
-  EXPECT_EQ(loaded(program, {"run", "a.yaml", "--out", "a"}), version);
+  std::set<std::string> run = loaded(program, {"run", "a.yaml", "--out", "a"});
+  std::erase_if(run, [](const std::string& n) { return n.starts_with("libtbbmalloc"); });  // TBB opens it when it works
+  EXPECT_EQ(run, version);
   if (!has_pictures()) GTEST_SKIP() << "the module pictures is not there";
   const std::set<std::string> tiff = loaded(program, {"run", "a.yaml", "--out", "b", "--set", "image.files=[tiff]"});
   EXPECT_TRUE(holds(tiff, "pictures.so"));

@@ -140,7 +140,7 @@ TEST_F(MovingScene, WrongMomentsAreNamed) {
   refused({"scene.animation={name: bend}", "scene.time=1"}, "scene.time: scene.animation has a time of its own");
   refused({"scene.animation={time: 1}"}, "scene.animation.name: expected the name or the index");
   refused({"scene={builtin: cornell, time: 1}"}, "scene.time: a built-in scene does not move");
-  refused({"scene.time=-1"}, "scene.time: expected a number from 0");
+  refused({"scene.time=-1"}, "scene.time: expected auto or a number from 0");
   EXPECT_THAT(run({"scene.file=still.gltf", "scene.time=1"}).err,
               HasSubstr("still.gltf: has no animations, skins or morph targets; scene.time changes nothing"));
 }
