@@ -28,7 +28,7 @@ constexpr Row kRows[] = {
     {"scene.camera", kSceneCamera},
     {"scene.sky", kPicture},
     {"scene.sky.color", kSkyOfOneColor},
-    {"scene.sky.rotation", kSkyMap},
+    {"scene.sky.rotation", kTurnedSky},
     {"camera", kPicture},
     {"camera.up", kOwnCamera},
     {"camera.focus_distance", kLens},

@@ -196,6 +196,9 @@ inline constexpr Condition kBudget{[](const C& c, const S&) { return c.area.budg
                                    "there is no area.budget_mm2"};
 inline constexpr Condition kSkyOfOneColor{[](const C& c, const S&) { return !has_sky_map(c); },
                                           "the sky is a map (scene.sky.file)"};
+// Where there is no section of a sky, its first key makes one, which takes the place of a built-in scene's own sky.
+inline constexpr Condition kTurnedSky{[](const C& c, const S&) { return !c.scene.sky || has_sky_map(c); },
+                                      "the sky has no map"};
 inline constexpr Condition kSkyMap{[](const C& c, const S&) { return has_sky_map(c); }, "the sky has no map"};
 
 }  // namespace carousel::conditions

@@ -56,7 +56,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                         : nullptr),
       network_(channels_, shared_, config.topology.link, config.faults, config.testers.contexts),
       kinds_(machine_kinds(
-          channels_, config.topology.link, config.memory, config.scene.sky && !config.scene.sky->file.empty(),
+          channels_, config.topology.link, config.memory,
+          config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty(),
           has_distributor(config) ? &config.testers.distributor : nullptr, config.collections.traversal)),
       numbers_(agent_numbers(shared_.topology, config.memory)) {
   const SideLatencies latencies(config.topology.link, ShapeCache::nearest(config.memory));
