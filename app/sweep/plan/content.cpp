@@ -17,13 +17,9 @@ namespace carousel::app {
 namespace {
 
 std::string read_all(const std::filesystem::path& path) {
-  // A device such as /dev/zero has no end, and what comes through a pipe is there for one reader: a sweep's points read
-  // the file again.
-  std::error_code ignored;
-  const std::filesystem::file_status status = std::filesystem::status(path, ignored);
-  const bool pipe = std::filesystem::is_fifo(status) || std::filesystem::is_socket(status);
-  if (pipe || std::filesystem::is_character_file(status))
-    throw FileError("cannot read " + path.string() + ": expected a plain file, found a " + (pipe ? "pipe" : "device"));
+  // A device such as /dev/zero has no end.
+  if (std::error_code ignored; std::filesystem::is_character_file(path, ignored))
+    throw FileError("cannot read " + path.string() + ": expected a plain file, found a device");
   InputFile in(path);
   if (!in) throw FileError("cannot read " + path.string() + ": " + std::strerror(errno));
   return {std::istreambuf_iterator<char>(in), {}};
@@ -58,14 +54,23 @@ nlohmann::json gltf_json(const std::string& bytes) {
 
 const std::string& ContentDigests::of_file(const std::string& name) {
   std::string& digest = files_[name];
-  if (digest.empty()) digest = bytes_digest(read_all(find_beside(folder_, name)));
-  return digest;
+  if (!digest.empty()) return digest;
+  const std::filesystem::path path = find_beside(folder_, name);
+  require_plain(path);
+  return digest = bytes_digest(read_all(path));
+}
+
+void ContentDigests::require_plain(const std::filesystem::path& path) const {
+  std::error_code ignored;
+  if (read_again_ && std::filesystem::is_fifo(path, ignored))
+    throw FileError("cannot read " + path.string() + ": expected a plain file, found a pipe, which has one reader");
 }
 
 const std::string& ContentDigests::of_scene(const std::string& name) {
   std::string& digest = scenes_[name];
   if (!digest.empty()) return digest;
   const std::filesystem::path path = find_beside(folder_, name);
+  require_plain(path);
   const std::string bytes = read_all(path);
   std::string all = bytes_digest(bytes);
   const nlohmann::json json = gltf_json(bytes);

@@ -14,7 +14,9 @@ namespace carousel::app {
 class ContentDigests {
  public:
   /// `config_folder`: where files are looked for before the working folder.
-  explicit ContentDigests(std::filesystem::path config_folder) : folder_(std::move(config_folder)) {}
+  /// `read_again`: those who use the digest read the files again, so that a pipe, which has one reader, is refused.
+  explicit ContentDigests(std::filesystem::path config_folder, bool read_again = false)
+      : folder_(std::move(config_folder)), read_again_(read_again) {}
 
   /// The digest of the scene's file, the files that it names, and a list of rays; empty if the configuration names
   /// none. Throws FileError for files that cannot be read.
@@ -23,8 +25,10 @@ class ContentDigests {
  private:
   const std::string& of_file(const std::string& name);
   const std::string& of_scene(const std::string& name);
+  void require_plain(const std::filesystem::path& path) const;
 
   std::filesystem::path folder_;
+  bool read_again_;
   std::map<std::string, std::string> files_, scenes_;  ///< by name, as configurations give it
 };
 

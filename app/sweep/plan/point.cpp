@@ -59,7 +59,7 @@ std::size_t point_threads(const Config& config) {
 PointMaker::PointMaker(ConfigText source, std::filesystem::path config_folder, std::vector<std::string> sets)
     : source_(std::move(source)),
       sets_(std::move(sets)),
-      content_(std::move(config_folder)),
+      content_(std::move(config_folder), true),
       program_(program_identity()) {}
 
 SweepPoint PointMaker::make(const Choice& choice) {
