@@ -7,7 +7,9 @@ namespace carousel::app {
 
 void add_inspect(CLI::App& program, InspectArguments& i) {
   CLI::App* inspect = program.add_subcommand("inspect", "List a scene's contents, the effects it needs and their cost");
-  inspect->add_option("scene", i.scene, "Scene file (glTF, OBJ, FBX, PLY, ...), or builtin:<name>")->required()->type_name("SCENE");
+  inspect->add_option("scene", i.scene, "Scene file (glTF, OBJ, FBX, PLY, ...), or builtin:<name>")
+      ->required()
+      ->type_name("SCENE");
   add_set_option(*inspect, i.sets);
   inspect
       ->add_option("--frame", i.frame,

@@ -23,8 +23,8 @@ class Executor {
 std::unique_ptr<Executor> make_sequential_executor();
 std::unique_ptr<Executor> make_jthread_executor(std::size_t threads);
 std::unique_ptr<Executor> make_tbb_executor(std::size_t threads);
-/// The one that the program uses: TBB's, and that of std::jthread under ThreadSanitizer, which does not know how Debian's
-/// TBB synchronises.
+/// The one that the program uses: TBB's, and that of std::jthread under ThreadSanitizer, which does not know how
+/// Debian's TBB synchronises.
 std::unique_ptr<Executor> make_executor(std::size_t threads);
 
 }  // namespace carousel

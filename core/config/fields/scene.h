@@ -77,7 +77,9 @@ void describe(V& v, AnimationConfig& c) {
 
 template <class V>
 void describe(V& v, SceneConfig& c) {
-  v.field("file", c.file, "", "A file of glTF, or of OBJ, FBX, PLY, STL, COLLADA and other formats. Its path is relative to the config's folder, then to the working one.");
+  v.field("file", c.file, "",
+          "A file of glTF, or of OBJ, FBX, PLY, STL, COLLADA and other formats. Its path is relative to the config's "
+          "folder, then to the working one.");
   v.choice("builtin", c.builtin, "A generated scene. A config gives either this or a file.");
   v.field("procedural", c.procedural, "",
           "The built-in spheres are procedural primitives, as many as there would be triangles.");
