@@ -78,7 +78,8 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
                                      kKiB);
   report::AreaOf& wires = parts[AreaPart::kWires];
   wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm *
-               (wire_lengths(topology) + (has_distributor(c) ? 1 : 0));  // the bus to the testers
+               (wire_lengths(topology, c.topology.link.bytes_per_cycle) +
+                (has_distributor(c) ? 1 : 0));  // the bus to the testers
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
   report::AreaOf& shaders = parts[AreaPart::kShaders];
   shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *

@@ -97,7 +97,7 @@ std::string bounds_text(const Aabb& box) {
   return box.empty() ? "nothing" : vector_text(box.lo) + " to " + vector_text(box.hi);
 }
 
-/// What the scene's animations, skins and morph targets are; nothing for one that stands still.
+/// Lists the scene's animations, skins and morph targets. Empty for a scene that stands still.
 std::string motion_text(const scene::Motion& motion) {
   if (!motion.any()) return "";
   std::string out = fmt::format("motion       {} animations, {} skins, {} morph targets\n", motion.clips.size(),

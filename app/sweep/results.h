@@ -14,7 +14,7 @@
 
 namespace carousel::app {
 
-/// What a run has to do for its report to have a result.
+/// The runs whose reports have a result.
 enum class ResultOf { kEveryRun, kNativeRun, kCycleRun, kCostProfile };
 
 /// A number or a name that is taken from the report of each point.

@@ -15,8 +15,9 @@
 namespace carousel::config {
 
 /// The base of a visitor V that asks for what rows say beyond their values: V::rest(path, value) returns what such a
-/// row goes on with, for the value of a key and its path. What differs at some places, in an item of a list, has the
-/// path of what holds for the whole machine (T::kRowPath); in_override() tells them apart.
+/// row goes on with, for the value of a key and its path. A key in an item of a list,
+/// which differs at some places, has the path of the key for the whole machine (T::kRowPath); in_override() tells them
+/// apart.
 template <class V>
 class RowWalk {
  public:

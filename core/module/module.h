@@ -10,7 +10,7 @@
 
 namespace carousel {
 
-/// What a module tells of itself. A module is a shared library `NAME.so` that the program opens when it first needs it:
+/// The description that a module gives of itself. A module is a shared library `NAME.so` that the program opens when it first needs it:
 /// glue between a large library of others and a struct of functions, its interface, which a header of the program
 /// declares. docs/modules.md has the rules. The first two members stay where they are in all versions.
 struct ModuleInfo {

@@ -74,7 +74,7 @@ void ModuleProcess::start() {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, ends[1], kStandardInput);
-  // What a library prints as it breaks is not the program's message.
+  // A library that breaks prints messages of its own, which are not the program's.
   for (const int output : {1, 2}) posix_spawn_file_actions_addopen(&actions, output, "/dev/null", O_WRONLY, 0);
   std::array<char*, 4> argv{const_cast<char*>(program.c_str()), const_cast<char*>(folder.c_str()), module_.data(),
                             nullptr};

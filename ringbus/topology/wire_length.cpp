@@ -37,10 +37,12 @@ double wire_length(const Topology& topology, const Topology::Wire& wire) {
          std::abs(static_cast<double>(from / width) - static_cast<double>(to / width));
 }
 
-double wire_lengths(const Topology& topology) {
+double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle) {
   if (topology.broadcasts()) return static_cast<double>(topology.resources());
   double sum = 0;
-  for (const Topology::Wire& wire : topology.wires()) sum += wire_length(topology, wire);
+  for (const Topology::Wire& wire : topology.wires())
+    sum +=
+        wire_length(topology, wire) * static_cast<double>(wire.bytes_per_cycle) / static_cast<double>(bytes_per_cycle);
   return sum;
 }
 

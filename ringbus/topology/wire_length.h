@@ -1,17 +1,20 @@
 #pragma once
 
+#include <cstdint>
+
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
 
 /// The length of a wire in links between neighbours. The resources stand on a square grid, in rows whose direction
 /// alternates, so that one and the next are neighbours; the ring that they make is folded, so that the first and the
-/// last are neighbours too. A bridge stands beside the first resource of its group, and a
-/// router beside the first resource with a link to or from it. Other wires run along the axes. A
-/// bus is one medium past all resources, which stands for each wire that leads to it; those from it have no length.
+/// last are neighbours too. A bridge stands beside the first resource of its group, and a router beside the first
+/// resource with a link to or from it. Other wires run along the axes. A bus is one medium past all resources, which
+/// stands for each wire that leads to it; those from it have no length.
 double wire_length(const Topology& topology, const Topology::Wire& wire);
 
-/// The lengths of all wires together. The medium of a bus counts once.
-double wire_lengths(const Topology& topology);
+/// The lengths of all wires together, each times its width over `bytes_per_cycle`, which is positive. The medium of a
+/// bus counts once, as a wire of that width.
+double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle);
 
 }  // namespace carousel::ringbus

@@ -120,6 +120,21 @@ TEST(GraphRun, ASlowLinkIsFelt) {
   EXPECT_GT(cycles("topology.nodes.2.latency_cycles=40"), base);
 }
 
+TEST(GraphRun, AWiderLinkTakesMoreWire) {
+  const Program program;
+  program.write("graph.yaml", kMachine + kClusters);
+  const auto bits = [&](const std::string& set) {
+    const Outcome run = program.run({"run", "graph.yaml", "--json", "--force", "--set", "engine.what_if=false", "--set",
+                                     "energy.profile=n7", "--set", "area.link_mm=1", "--set", set});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return Json::parse(run.out)["area"]["parts"]["wires"]["size"].get<double>();
+  };
+  const double narrow = bits("topology.links.2.bytes_per_cycle=8");
+  EXPECT_GT(bits("topology.links.2.bytes_per_cycle=16"), narrow);
+  EXPECT_DOUBLE_EQ(bits("topology.links.2.bytes_per_cycle=24") - narrow,
+                   2 * (bits("topology.links.2.bytes_per_cycle=16") - narrow));
+}
+
 TEST(GraphRun, CheckSaysWaysAndVerdict) {
   const Program program;
   program.write("graph.yaml", kMachine + kClusters);
