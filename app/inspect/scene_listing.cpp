@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 #include "scene/model/node_bounds.h"
 #include "shading/lights/sky_facts.h"
 
@@ -100,11 +101,11 @@ std::string bounds_text(const Aabb& box) {
 /// Lists the scene's animations, skins and morph targets. Empty for a scene that stands still.
 std::string motion_text(const scene::Motion& motion) {
   if (!motion.any()) return "";
-  std::string out = fmt::format("motion       {} animations, {} skins, {} morph targets\n", motion.clips.size(),
-                                motion.skins, motion.morph_targets);
+  std::string out = report::singular(fmt::format("motion       {} animations, {} skins, {} morph targets\n",
+                                                 motion.clips.size(), motion.skins, motion.morph_targets));
   for (std::size_t i = 0; i < motion.clips.size(); ++i)
-    out += fmt::format("             animation {}: \"{}\", {:.6g} s, {} channels\n", i, motion.clips[i].name,
-                       motion.clips[i].seconds, motion.clips[i].channels);
+    out += fmt::format("             animation {}: \"{}\", {:.6g} s, {}\n", i, motion.clips[i].name,
+                       motion.clips[i].seconds, report::singular(fmt::format("{} channels", motion.clips[i].channels)));
   return out;
 }
 

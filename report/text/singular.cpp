@@ -22,11 +22,12 @@ std::string singular_noun(std::string_view plural) {
   return stem(1);
 }
 
-/// The word that begins at `at`; empty if none does, or if it is part of a unit, as in rays/s.
+/// The word that begins at `at`; empty if none does, if it is part of a unit, as in rays/s, or the end of a name before
+/// a colon, which is the user's.
 std::string_view word_at(std::string_view text, std::size_t at) {
   const auto* const end = std::find_if_not(text.begin() + static_cast<std::ptrdiff_t>(at), text.end(), letter);
   const std::string_view word = text.substr(at, static_cast<std::size_t>(end - text.begin()) - at);
-  return end != text.end() && (*end == '/' || *end == '_') ? std::string_view{} : word;
+  return end != text.end() && (*end == '/' || *end == '_' || *end == ':') ? std::string_view{} : word;
 }
 
 }  // namespace

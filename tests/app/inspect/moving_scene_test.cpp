@@ -102,8 +102,8 @@ TEST_F(MovingScene, ThePictureShowsTheMovedMesh) {
 
 TEST_F(MovingScene, InspectListsWhatMoves) {
   const Outcome table = program_.run({"inspect", "arm.gltf"});
-  EXPECT_THAT(table.out, HasSubstr("motion       1 animations, 1 skins, 0 morph targets\n"
-                                   "             animation 0: \"bend\", 1 s, 1 channels\n"));
+  EXPECT_THAT(table.out, HasSubstr("motion       1 animation, 1 skin, 0 morph targets\n"
+                                   "             animation 0: \"bend\", 1 s, 1 channel\n"));
   const Json motion = Json::parse(program_.run({"inspect", "square.gltf", "--json"}).out)["motion"];
   EXPECT_EQ(motion["animations"], Json::parse(R"([{"name": "", "seconds": 2, "channels": 1}])"));
   EXPECT_EQ(motion["morph_targets"], 2);

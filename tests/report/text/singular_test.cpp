@@ -13,7 +13,7 @@ TEST(Singular, IsTheNounBehindAOne) {
 
 TEST(Singular, LeavesOtherNumbersUnitsAndWordsAlone) {
   for (const char* text : {"11 rays", "0.1 rays", "1.0 rays", "2 rays", "1 ms", "1 krays/s", "1 per ray", "x1 rays",
-                           "1", "1 ", "1 at_nodes", ""})
+                           "1", "1 ", "1 at_nodes", "1 cars: 4 triangles", ""})
     EXPECT_EQ(singular(text), text);
 }
 
