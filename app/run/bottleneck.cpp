@@ -10,6 +10,7 @@
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/verdict/bottleneck_search.h"
+#include "ringbus/verdict/small_frame.h"
 
 namespace carousel::app {
 
@@ -47,6 +48,10 @@ class PilotWorkload final : public Workload {
 report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& run,
                                    std::stop_token stop, bool quiet) {
   if (!run.complete) return report::judge_gains({.complete = false});
+  if (const auto small =
+          ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), ringbus::slots_of(prepared.config())))
+    return report::judge_gains(
+        {.frame_too_small = report::FrameTooSmall{small->paths, small->slots, small->between, small->least_paths}});
   ringbus::RunOptions options;
   options.threads = prepared.threads_beside;
   spdlog::debug("search: up to {} simulations at once", options.threads);
@@ -63,7 +68,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       prepared.config(), prepared.accel, prepared.scene_size(),
       [&](const Config& machine, std::uint64_t paths) {
-        return std::make_unique<PilotWorkload>(prepared, machine, job.first_hits(), paths);
+        return std::make_unique<PilotWorkload>(
+            prepared, machine, machine.image.seed == prepared.config().image.seed ? job.first_hits() : nullptr, paths);
       },
       {run, job.first_rays()}, options, show);
   spdlog::debug("search: simulated {} rays, {:.2f} times those of the run", found.simulated,
@@ -80,11 +86,14 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          .noise = found.uncertainty,
                          .deviation = found.deviation,
                          .whole_frame = found.whole,
+                         .replicates = found.replicates,
                          .paths = found.paths,
                          .rays = found.rays};
   for (const ringbus::Gain& gain : found.gains)
     out.gains.push_back(
         {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high, gain.together});
+  for (const ringbus::GainPhase& phase : found.phases)
+    out.phases.push_back({phase.begin, phase.end, phase.time, phase.name, phase.action, phase.gain});
   return report::judge_gains(std::move(out));
 }
 

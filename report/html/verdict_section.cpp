@@ -22,10 +22,8 @@ std::string verdict_sentence(const Json& report) {
       const double low = number_at(gain, "low"), high = number_at(gain, "high");
       std::string out = fmt::format("{} limits this machine: {} gains {:+.1f} %", words(limits),
                                     text_at(gain, "action"), 100 * number_at(gain, "gain"));
-      if (bottleneck->value("whole_frame", false))
-        out += " (measured on the whole frame, so without an error of sampling)";
-      else
-        out += fmt::format(" (95 % of confidence: {:+.1f} % to {:+.1f} %)", 100 * low, 100 * high);
+      out += fmt::format(" (95 % of confidence, other seeds of the picture included: {:+.1f} % to {:+.1f} %)",
+                         100 * low, 100 * high);
       if (const Json& rivals = (*bottleneck)["rivals"]; !rivals.empty()) {
         out += "; as much may be gained with";
         for (std::size_t i = 0; i < rivals.size(); ++i)
@@ -51,6 +49,21 @@ std::string verdict_sentence(const Json& report) {
   return "A run of the native engine shows the queues of this host and no simulated time, so that no part of the "
          "machine "
          "can be named as its limit. The cycle engine names it: --set engine.kind=cycle.";
+}
+
+/// Which part limits the machine when, if it is not always the same.
+std::string phases_text(const Json& report) {
+  const Json* phases = find(report, "bottleneck.phases");
+  std::string out;
+  if (!phases || phases->size() < 2) return out;
+  for (const Json& phase : *phases) {
+    const std::string limits = text_at(phase, "limits");
+    out += fmt::format("{}{:.0f} to {:.0f} % of the rays ({:.0f} % of the time): {}", out.empty() ? "" : "; ",
+                       100 * number_at(phase, "begin"), 100 * number_at(phase, "end"), 100 * number_at(phase, "time"),
+                       limits.empty() ? "no class alone"
+                                      : fmt::format("{} ({:+.1f} %)", words(limits), 100 * number_at(phase, "gain")));
+  }
+  return out;
 }
 
 void fact(Html& out, std::string_view name, const std::string& value) {
@@ -102,6 +115,7 @@ Html verdict_section(const Json& report, const Picture& picture) {
         "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n");
   out += markup("<div class=\"glance\">\n{}<div>\n<p class=\"verdict\">{}</p>\n<dl>\n", picture_html(report, picture),
                 verdict_sentence(report));
+  fact(out, "Phases", phases_text(report));
   fact(out, "Throughput", throughput_text(report));
   if (const Json* cycles = find(report, "engine.cycles"))
     fact(out, "Simulated", fmt::format("{} cycles", value_text(*cycles)));

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "core/statistics/worth_naming.h"
+#include "report/text/number_text.h"
 
 namespace carousel::report {
 
@@ -12,6 +13,12 @@ namespace {
 
 std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (!b.complete) return "not found out: the search was interrupted";
+  if (const auto& small = b.frame_too_small)
+    return fmt::format(
+        "not found out: {} paths for {} ray slots mostly fill and drain the machine ({:.0f} % of the rays lie "
+        "between); "
+        "from some {} paths on, or with fewer slots, it can be said",
+        grouped(small->paths), grouped(small->slots), 100 * small->between, grouped(small->least_paths));
   if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
   if (named == nullptr) {

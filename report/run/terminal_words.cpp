@@ -135,6 +135,10 @@ void cycle_words(Words& w) {
       .item(
           "by N of the frame's rays, which foretell its cycles to N", "bottleneck.rays",
           "rays of the pilot, which the search simulates, and by how much the cycles that it foretells miss the run's");
+  w.line("phases").item(
+      "N to N of the rays, N of the time: *", "bottleneck.phases",
+      "a stretch of the pilot's completed rays, its part of the cycles, and the class that gains most in it; shown "
+      "if the class changes");
   w.line("bound").item(
       "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",
       "the rate that the tightest class of parts would allow if it were busy all the time, and the part "

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -48,10 +49,44 @@ void describe(V& v, const BottleneckGain& r) {
   v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles",
           "rate that is foretold for the whole frame on the relaxed machine");
   v.field("gain", r.gain, "fraction", "gain over the machine as configured, for the whole frame");
-  v.field("low", r.low, "fraction", "lower end of the gain's interval of confidence (95 %)");
+  v.field("low", r.low, "fraction",
+          "lower end of the gain's interval of confidence (95 %), which covers other seeds of the picture");
   v.field("high", r.high, "fraction", "upper end of the gain's interval of confidence (95 %)");
   v.field("together", r.together, "classes",
           "classes that were relaxed together in the simulation: if more than 1, the gain is that of all of them");
+}
+
+/// A frame that is too small beside the ray slots of its machine for a verdict.
+struct FrameTooSmall {
+  std::uint64_t paths = 0, slots = 0;
+  double between = 0;
+  std::uint64_t least_paths = 0;
+};
+
+template <class V>
+void describe(V& v, const FrameTooSmall& r) {
+  v.field("paths", r.paths, "paths", "paths, or rays of a list, that the frame begins");
+  v.field("slots", r.slots, "slots", "ray slots of the machine");
+  v.field("between", r.between, "fraction",
+          "part of the rays that were completed between fill and drain; three quarters would do");
+  v.field("least_paths", r.least_paths, "paths", "paths that would do on this machine, about");
+}
+
+/// A stretch of the first pilot in which one class of parts gains most.
+struct BottleneckPhase {
+  double begin = 0, end = 0, time = 0;
+  std::string limits, action;
+  double gain = 0;
+};
+
+template <class V>
+void describe(V& v, const BottleneckPhase& r) {
+  v.field("begin", r.begin, "fraction", "completed rays of the pilot where it begins");
+  v.field("end", r.end, "fraction", "completed rays of the pilot where it ends");
+  v.field("time", r.time, "fraction", "part of the pilot's cycles");
+  v.field("limits", r.limits, "", "class of parts that gains most in it; empty if none gains 5 %");
+  v.field("action", r.action, "", "change that relaxed the class");
+  v.field("gain", r.gain, "fraction", "gain over the machine as configured in these cycles");
 }
 
 struct Bottleneck {
@@ -60,8 +95,10 @@ struct Bottleneck {
   std::vector<std::string> rivals{};
   double rays_per_kilocycle = 0, noise = 0, deviation = 0;
   bool whole_frame = false;
-  std::uint64_t paths = 0, rays = 0;
+  std::uint64_t replicates = 0, paths = 0, rays = 0;
+  std::optional<FrameTooSmall> frame_too_small{};
   std::vector<BottleneckGain> gains{};
+  std::vector<BottleneckPhase> phases{};
 };
 
 template <class V>
@@ -78,10 +115,18 @@ void describe(V& v, const Bottleneck& r) {
   v.field("noise", r.noise, "fraction",
           "half the interval of confidence of the rate that the pilot foretells for the machine as configured");
   v.field("deviation", r.deviation, "fraction", "difference of the run's cycles from those that the pilot foretells");
-  v.field("whole_frame", r.whole_frame, "", "true if the pilot is the whole frame; gains are then exact");
+  v.field("whole_frame", r.whole_frame, "", "true if the pilot is the whole frame");
+  v.field(
+      "replicates", r.replicates, "seeds",
+      "other seeds of the picture with which the whole frame was simulated; the named gains' intervals hold theirs");
   v.field("paths", r.paths, "paths", "paths of the pilot, drawn over the whole frame");
   v.field("rays", r.rays, "rays", "rays of the pilot, which are simulated for each class");
+  v.section("frame_too_small", r.frame_too_small,
+            "the frame mostly fills and drains the machine, so that nothing is found out; absent otherwise");
   v.section("gains", r.gains, "gain of each class, greatest first");
+  v.section(
+      "phases", r.phases,
+      "stretches in which different classes limit the machine, in the order of time; one if it is always the same");
 }
 
 }  // namespace carousel::report

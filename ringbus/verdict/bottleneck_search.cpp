@@ -11,6 +11,8 @@
 
 #include "core/statistics/worth_naming.h"
 #include "ringbus/verdict/foretell.h"
+#include "ringbus/verdict/phases.h"
+#include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
 #include "ringbus/verdict/steady_state.h"
 #include "ringbus/verdict/what_if.h"
@@ -21,6 +23,11 @@ namespace {
 
 double rays_per_kilocycle(std::uint64_t rays, double cycles) {
   return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
+}
+
+/// A seed of the same range, far from those that users count up from.
+std::int64_t other_seed(std::int64_t seed, std::uint64_t k) {
+  return static_cast<std::int64_t>((static_cast<std::uint64_t>(seed) + k * 0x9e3779b97f4a7c15ull) >> 1);
 }
 
 class Search {
@@ -42,6 +49,7 @@ class Search {
     out_.paths = pilot_paths(config_, run_.paths, frame, first / (groups.size() + 1));
     begin("first pilot", groups.size());
     screen(groups);
+    note_phases();
     std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
         pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
@@ -68,6 +76,7 @@ class Search {
       begin("larger pilot", worth.size());
       simulate_base();
     }
+    if (out_.whole && out_.complete) replicate();
     if (!out_.complete) return without_gains();
     std::stable_sort(out_.gains.begin(), out_.gains.end(),
                      [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
@@ -82,6 +91,7 @@ class Search {
 
   Bottleneck without_gains() {
     out_.gains.clear();
+    out_.phases.clear();
     return out_;
   }
 
@@ -187,6 +197,23 @@ class Search {
     }
   }
 
+  /// Where in the pilot which class limits, of those that were relaxed alone.
+  void note_phases() {
+    std::vector<std::size_t> classes;
+    std::vector<PilotRun> runs;
+    for (const auto& [i, relaxed] : relaxed_) {
+      classes.push_back(i);
+      runs.push_back({&*relaxed.result.cycle, relaxed.result.rays_completed});
+    }
+    if (!out_.complete) return;
+    for (const FramePhase& phase : frame_phases({&*base_.cycle, base_.rays_completed}, runs)) {
+      GainPhase& out = out_.phases.emplace_back(GainPhase{phase.begin, phase.end, phase.time, "", "", phase.gain});
+      if (phase.best == kNoClass) continue;
+      out.name = what_ifs_[classes[phase.best]].name();
+      out.action = what_ifs_[classes[phase.best]].part.action;
+    }
+  }
+
   void halve(const std::vector<std::size_t>& group, std::vector<std::vector<std::size_t>>& parts) {
     const auto half = group.begin() + static_cast<std::ptrdiff_t>(group.size() / 2);
     parts.emplace_back(group.begin(), half);
@@ -263,6 +290,40 @@ class Search {
     return out;
   }
 
+  /// Simulates the whole frame with other seeds of the picture, as configured and with the classes that may be named,
+  /// and widens the intervals of these to hold what they gain there.
+  void replicate() {
+    constexpr std::uint64_t kReplicates = 2;
+    constexpr std::size_t kMost = 3;
+    std::vector<std::size_t> named;
+    for (std::size_t i = 0; i < out_.gains.size(); ++i)
+      if (worth_naming(out_.gains[i].gain, out_.gains[i].low)) named.push_back(i);
+    greatest_first(named);
+    named.resize(std::min(named.size(), kMost));
+    if (named.empty()) return;
+    begin("other seeds", named.size() + 1);
+    pilots_.expect_more((kReplicates - 1) * (named.size() + 1));
+    for (std::uint64_t k = 1; k <= kReplicates; ++k) {
+      std::deque<Config> machines{config_};
+      for (const std::size_t i : named) machines.push_back(what_ifs_[i].relaxed);
+      std::vector<const Config*> which;
+      for (Config& machine : machines) {
+        machine.image.seed = other_seed(config_.image.seed, k);
+        which.push_back(&machine);
+      }
+      const std::vector<RunResult> results = simulate(which);
+      if (!out_.complete) return;
+      for (std::size_t n = 0; n < named.size(); ++n) {
+        Gain& gain = out_.gains[named[n]];
+        const double there =
+            static_cast<double>(results.front().cycle->cycles) / static_cast<double>(results[n + 1].cycle->cycles) - 1;
+        gain.low = std::min(gain.low, there);
+        gain.high = std::max(gain.high, there);
+      }
+      out_.replicates = k;
+    }
+  }
+
   void greatest_first(std::vector<std::size_t>& classes) const {
     std::stable_sort(classes.begin(), classes.end(),
                      [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
@@ -271,34 +332,16 @@ class Search {
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
   /// are alike.
   bool judge() {
-    // Schedules differ by so much for no reason that the pilot could know.
-    constexpr double kTolerance = 0.02, kBusyTolerance = 0.05;
     const Foretelling foretold = foretelling();
     const Estimate cycles = foretold.cycles();
     out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
     out_.unlike.clear();
-    if (stops_) {
-      out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, cycles.value);
-      return true;
-    }
-    const double ran = static_cast<double>(run_.result.cycle->cycles), allowed = out_.uncertainty + kTolerance;
+    const double ran = stops_ ? cycles.value : static_cast<double>(run_.result.cycle->cycles);
     out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, ran);
+    if (stops_) return true;
     out_.deviation = deviation();
-    if (std::abs(out_.deviation) > allowed) {
-      out_.unlike = fmt::format("it foretells {:.0f} cycles for the frame, {:+.1f} % of the run's", cycles.value,
-                                100 * (cycles.value / ran - 1));
-      return false;
-    }
-    const std::vector<double> busy = foretold.busy();
-    for (std::size_t i = 0; i < busy.size(); ++i) {
-      const cycle::ClassUse& use = run_.result.cycle->uses[i];
-      if (use.parts <= 0) continue;
-      const double here = busy[i] / use.parts / cycles.value, there = static_cast<double>(use.busy) / use.parts / ran;
-      if (std::abs(here - there) <= std::max(here, there) * out_.uncertainty + kBusyTolerance) continue;
-      out_.unlike = fmt::format("its {} is {:.0f} % busy, and the run's {:.0f} %", use.name, 100 * here, 100 * there);
-      return false;
-    }
-    return true;
+    out_.unlike = unlikeness(foretold, *run_.result.cycle);
+    return out_.unlike.empty();
   }
 
   /// A relaxed machine's run, and the pilot that it was.

@@ -21,6 +21,14 @@ struct Gain {
   std::size_t together = 1;
 };
 
+/// A stretch of the pilot, by completed rays, and the class that gains most when it is relaxed there.
+struct GainPhase {
+  double begin = 0, end = 0;  ///< completed rays, as fractions of the pilot's
+  double time = 0;            ///< part of the pilot's cycles
+  std::string name, action;   ///< empty: none gains enough
+  double gain = 0;
+};
+
 /// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
 struct Bottleneck {
   bool complete = true;  ///< false: interrupted; there are no gains
@@ -30,9 +38,11 @@ struct Bottleneck {
   std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
   std::uint64_t simulated = 0;    ///< rays of all simulations of the search
   bool whole = false;             ///< the pilot is the whole frame
+  std::uint64_t replicates = 0;   ///< other seeds with which the whole frame was simulated
   double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
   double uncertainty = 0;         ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
   std::vector<Gain> gains;        ///< greatest first
+  std::vector<GainPhase> phases;  ///< of the first pilot, in the order of time; one if nothing changes
 };
 
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
@@ -46,6 +56,9 @@ struct Bottleneck {
 /// the pilot is the frame. The last pilot is compared with the run. If it is not like it, or if no class can be named
 /// since each gain may be noise, it is doubled, twice at most, for half of the classes. A pilot that is still not like
 /// the run finds out nothing.
+///
+/// Of a whole frame the classes that may be named are simulated with two other seeds of the picture besides, and their
+/// intervals widened to hold what they gain there.
 ///
 /// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
 /// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.

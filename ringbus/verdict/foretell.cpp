@@ -77,21 +77,19 @@ std::vector<double> Foretelling::differences(PilotRun other, Window window) cons
 Estimate Foretelling::gain(PilotRun relaxed, double deviation, bool warms) const {
   const auto gain_by = [&](Window w) { return frame_cycles(base_, w) / frame_cycles(relaxed, w) - 1; };
   Window w = window(relaxed);
-  if (whole()) {
-    const double gain = gain_by(w);
-    return {gain, gain, gain};
-  }
   std::vector<double> d = differences(relaxed, w);
   double still = 0;  // that it may yet gain
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   if (const double grown = std::accumulate(middle, d.end(), 0.0) - std::accumulate(d.begin(), middle, 0.0);
-      warms && grown > 2 * standard_error(d)) {
+      warms && !whole() && grown > 2 * standard_error(d)) {
     const Window earlier{w.begin, w.begin + w.rays() / 2};
     w.begin = earlier.end;
     still = std::max(0.0, gain_by(w) - gain_by(earlier));
     d = differences(relaxed, w);
   }
-  const double gain = gain_by(w), half = 2 * standard_error(d) + std::abs(deviation) * (1 + gain) * (1 + gain) / 2;
+  const double gain = gain_by(w), of_frame = static_cast<double>(w.rays()) / static_cast<double>(frame_rays_),
+               off = whole() ? 0 : std::abs(deviation) * (1 + gain) * (1 + gain) / 2,
+               half = 2 * standard_error(d) * std::sqrt(1 + of_frame) + off;
   return {gain, gain - half, gain + half + still};
 }
 

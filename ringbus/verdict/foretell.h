@@ -32,7 +32,7 @@ class Foretelling {
   Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill);
 
   /// The frame's cycles on the pilot's machine. The interval is that of the differences between neighbouring parts of
-  /// the pilot.
+  /// the pilot; of a whole frame, whose cycles are known, none.
   Estimate cycles() const;
   /// The frame's busy cycles of each class of CycleResult::uses.
   std::vector<double> busy() const;
@@ -42,8 +42,10 @@ class Foretelling {
   /// rays, so only the difference between both times from one block's mean completion to the next one's counts, d;
   /// neighbouring blocks are of neighbouring strata, so the variance is that of their successive differences, (d[i+1] -
   /// d[i])^2 / 2, as for any systematic sample (K. Wolter, Introduction to Variance Estimation, 2nd edition 2007,
-  /// section 8.2, v2). Two standard errors count. `deviation`, the fraction by which the frame is known to differ from
-  /// its foretelling, is added: if it lies in the class at question, the time that the class limits is off by as much.
+  /// section 8.2, v2). The frame with another seed of its picture differs from this one, too, by as much as its own
+  /// rays make it, N in all beside the pilot's n: two standard errors, times the root of 1 + n / N, count, also of a
+  /// pilot that is the whole frame. `deviation`, the fraction by which the frame is known to differ from its
+  /// foretelling, is added: if it lies in the class at question, the time that the class limits is off by as much.
   ///
   /// `warms`: the relaxed machine has more room for shapes, and may go on filling it after it is full of rays. If the
   /// later half of the pilot gains surely more than the earlier one, it stands for the frame's further rays, and the

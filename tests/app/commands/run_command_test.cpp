@@ -104,7 +104,8 @@ TEST(RunCommand, TheRasteriserLeavesTheRestToASimulatedMachine) {
     return program.run(all);
   };
   ASSERT_EQ(with({"native"}).status, 0);
-  const Outcome outcome = with({"cycle", "--set", "engine.kind=cycle", "--set", "verify=reference"});
+  const Outcome outcome =
+      with({"cycle", "--set", "engine.kind=cycle", "--set", "verify=reference", "--set", "rays.slots_per_resource=8"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json native = Json::parse(program.read("native/report.json")),
              cycle = Json::parse(program.read("cycle/report.json"));

@@ -62,6 +62,67 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
   EXPECT_LT(named["gain"], named["high"]);
 }
 
+// 300 paths hardly fill 256 slots; the size that is told fills them, and no simulation is spent on the small one.
+TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
+  const Json small = run(kTerrain, {"engine.what_if=true", "image.width=20", "image.height=15", "image.samples=1",
+                                    "rays.slots_per_resource=64"});
+  EXPECT_EQ(schema_problems(report::report_schema(), small), std::vector<std::string>{});
+  const Json& told = small["bottleneck"];
+  EXPECT_EQ(told["limits"], "");
+  EXPECT_TRUE(told["gains"].empty());
+  EXPECT_EQ(told["frame_too_small"]["paths"], 300);
+  EXPECT_EQ(told["frame_too_small"]["slots"], 256);
+  const auto least = told["frame_too_small"]["least_paths"].get<std::uint64_t>();
+  const std::uint64_t samples = (least + 299) / 300;
+  EXPECT_GT(samples, 1u);
+  const Json large = run(kTerrain, {"engine.what_if=true", "image.width=20", "image.height=15",
+                                    "image.samples=" + std::to_string(samples), "rays.slots_per_resource=64"});
+  EXPECT_FALSE(large["bottleneck"].contains("frame_too_small")) << large["bottleneck"].dump(1);
+  EXPECT_FALSE(large["bottleneck"]["gains"].empty());
+}
+
+// A pilot of a frame of few rays is the frame. Its gains are measured, and still differ with the random numbers of the
+// picture.
+TEST_F(VerdictRun, TheIntervalOfAWholeFrameHoldsTheGainsOfOtherSeeds) {
+  const std::vector<std::string> whole{"image.width=48", "image.height=36", "image.samples=1"};
+  std::vector<std::string> searched = whole;
+  searched.push_back("engine.what_if=true");
+  const Json report = run(kTerrain, searched);
+  const Json& bottleneck = report["bottleneck"];
+  ASSERT_TRUE(bottleneck["whole_frame"]) << bottleneck.dump(1);
+  ASSERT_EQ(bottleneck["limits"], "triangle_tests") << bottleneck.dump(1);
+  EXPECT_EQ(bottleneck["replicates"], 2);
+  const Json& named = bottleneck["gains"][0];
+  EXPECT_LT(named["low"], named["high"]);
+  int within = 0;
+  for (const char* seed : {"image.seed=2", "image.seed=3", "image.seed=4", "image.seed=5", "image.seed=6"}) {
+    std::vector<std::string> sets = whole;
+    sets.emplace_back(seed);
+    const double before = run(kTerrain, sets)["engine"]["cycles"].get<double>();
+    for (const Json& set : named["sets"]) sets.push_back(set);
+    const double gain = before / run(kTerrain, sets)["engine"]["cycles"].get<double>() - 1;
+    within += named["low"].get<double>() <= gain && gain <= named["high"].get<double>();
+  }
+  EXPECT_GE(within, 4);
+}
+
+// The sky comes first and costs shading alone; with few workers it limits the machine, and then triangle tests do.
+TEST_F(VerdictRun, EachPhaseHasItsOwnVerdict) {
+  const Json report = run(kTerrain, {"engine.what_if=true", "shading.workers=2"});
+  const Json& phases = report["bottleneck"]["phases"];
+  ASSERT_GE(phases.size(), 2u) << report["bottleneck"].dump(1);
+  EXPECT_EQ(phases.front()["limits"], "shading");
+  EXPECT_EQ(phases.back()["limits"], "triangle_tests");
+  double time = 0, at = 0;
+  for (const Json& phase : phases) {
+    EXPECT_EQ(phase["begin"], at);
+    at = phase["end"];
+    time += phase["time"].get<double>();
+  }
+  EXPECT_EQ(at, 1);
+  EXPECT_NEAR(time, 1, 1e-9);
+}
+
 // One simulation of few resources is fastest on one thread; those of the search have nothing to do with each other.
 TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
   const auto cores = std::max(1u, std::thread::hardware_concurrency());

@@ -54,6 +54,14 @@ TEST(JudgeGains, SaysThatItWasInterrupted) {
   EXPECT_EQ(b.verdict, "not found out: the search was interrupted");
 }
 
+TEST(JudgeGains, SaysThatTheFrameIsTooSmall) {
+  const Bottleneck b = judge_gains({.frame_too_small = FrameTooSmall{12000, 8192, 0.31, 36000}});
+  EXPECT_THAT(b.limits, IsEmpty());
+  EXPECT_EQ(b.verdict,
+            "not found out: 12,000 paths for 8,192 ray slots mostly fill and drain the machine (31 % of the rays lie "
+            "between); from some 36,000 paths on, or with fewer slots, it can be said");
+}
+
 TEST(JudgeGains, SaysThatThePilotIsNotLikeTheRun) {
   const Bottleneck b = judge_gains({.unlike = "boxes are busy 10 % of its time, and 40 % of the run's"});
   EXPECT_EQ(b.verdict,

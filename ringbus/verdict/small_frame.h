@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "ringbus/results/cycle_result.h"
+
+namespace carousel::ringbus {
+
+/// A frame that mostly fills its machine with rays and drains it.
+struct SmallFrame {
+  std::uint64_t paths = 0, slots = 0;  ///< paths, or rays of a list, that the frame begins; ray slots of the machine
+  double between = 0;                  ///< part of its rays that were completed between fill and drain
+  std::uint64_t least_paths = 0;       ///< paths that would do, about: two digits, rounded up
+};
+
+/// A frame is too small if less than three quarters of its rays are completed between fill and drain (steady_state.h
+/// says when these are). What limits its machine is then not what limits it in a larger frame: caches are cold and
+/// slots are empty for much of the time. `paths`: that the frame begins. Absent if the frame is large enough, or if the
+/// run does not say when its last path began.
+std::optional<SmallFrame> small_frame(const cycle::CycleResult& result, std::uint64_t rays, std::uint64_t paths,
+                                      std::uint64_t slots);
+
+}  // namespace carousel::ringbus
