@@ -44,7 +44,7 @@ void add_report(CLI::App& program, ReportArguments& r) {
       program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
   report
       ->add_option("folder", r.folder,
-                   "Folder of a run or a sweep, or the JSON of run, sweep, stress, accuracy or follow")
+                   "Folder that run, sweep, stress or accuracy wrote, or their JSON or that of follow")
       ->required()
       ->type_name("PATH");
   report

@@ -1,6 +1,9 @@
 #include "app/commands/report_command.h"
 
 #include <optional>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "app/host/exit_status.h"
 #include "app/host/output.h"
@@ -47,19 +50,37 @@ std::string page_of_file(const report::Document& document, const std::filesystem
   }
 }
 
+/// What commands wrote to a folder, side by side. Throws a FileError if there is nothing.
+std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> out;
+  for (const char* name : {"sweep.json", "report.json", "accuracy.json", "stress.json"})
+    if (std::filesystem::exists(folder / name)) out.push_back(folder / name);
+  if (out.empty())
+    throw FileError(
+        folder.string() +
+        ": no result of a command is in this folder: sweep.json, report.json, accuracy.json or stress.json");
+  return out;
+}
+
 }  // namespace
 
 int report_command(const ReportArguments& arguments) {
-  std::filesystem::path file = arguments.folder;
+  const std::filesystem::path named = arguments.folder;
+  std::vector<std::filesystem::path> files{named};
   if (!arguments.point.empty())
-    file = point_path(file, arguments.point);
-  else if (std::filesystem::is_directory(file))
-    file /= std::filesystem::exists(file / "sweep.json") ? "sweep.json" : "report.json";
-  const report::Document document = report::read_document(file);
-  const std::filesystem::path page = arguments.out.empty() ? std::filesystem::path(file).replace_extension(".html")
-                                                           : std::filesystem::path(arguments.out);
-  write_file(page, page_of_file(document, file));
-  print_result("page         " + page.string() + "\n");
+    files = {point_path(named, arguments.point)};
+  else if (std::filesystem::is_directory(named))
+    files = results_in(named);
+  if (files.size() > 1 && !arguments.out.empty())
+    throw FileError(fmt::format("{}: {} results are in this folder, and --out is one page: name one of them",
+                                named.string(), files.size()));
+  for (const std::filesystem::path& file : files) {
+    const report::Document document = report::read_document(file);
+    const std::filesystem::path page = arguments.out.empty() ? std::filesystem::path(file).replace_extension(".html")
+                                                             : std::filesystem::path(arguments.out);
+    write_file(page, page_of_file(document, file));
+    print_result("page         " + page.string() + "\n");
+  }
   return kDone;
 }
 

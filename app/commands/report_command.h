@@ -8,7 +8,7 @@
 namespace carousel::app {
 
 struct ReportArguments {
-  std::string folder;  ///< folder of a run or a sweep, or a JSON file that a command wrote
+  std::string folder;  ///< folder that a command wrote, or one of the JSON files in it
   std::string point;   ///< digest of a point of the sweep in the folder; empty: the page of the folder itself
   std::string out;     ///< page to write; empty: beside that file
 };
@@ -16,8 +16,8 @@ struct ReportArguments {
 /// report.html of a run whose picture, if it has one, is `folder`/image.png.
 std::string run_page_of(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
 
-/// `carousel report`: makes a page again from report.json and image.png of a run, or of another command's JSON. Returns
-/// the exit status.
+/// `carousel report`: makes a page again from report.json and image.png of a run, or of another command's JSON; those
+/// of all results of a folder that run, accuracy and stress share. Returns the exit status.
 int report_command(const ReportArguments& arguments);
 
 }  // namespace carousel::app

@@ -42,6 +42,26 @@ TEST_F(RunPage, IsWrittenByRunAndMadeAgainByReport) {
   EXPECT_EQ(program_.read("out/report.html"), page);
 }
 
+TEST_F(RunPage, OfAllResultsOfAFolderAreMadeAgain) {
+  ASSERT_EQ(run({}).status, 0);
+  const Outcome accuracy = program_.run(
+      {"accuracy", "small.yaml", "--rays", "30", "--hard-rays", "10", "--repetitions", "1", "--quiet", "--out", "out"});
+  ASSERT_EQ(accuracy.status, 0) << accuracy.err;
+  std::filesystem::remove(program_.folder() / "out/report.html");
+  std::filesystem::remove(program_.folder() / "out/accuracy.html");
+  const Outcome again = program_.run({"report", "out"});
+  EXPECT_EQ(again.status, 0) << again.err;
+  EXPECT_TRUE(exists("out/report.html"));
+  EXPECT_TRUE(exists("out/accuracy.html"));
+  const Outcome one = program_.run({"report", "out", "--out", "page.html"});
+  EXPECT_EQ(one.status, 2);
+  EXPECT_THAT(one.err, HasSubstr("2 results are in this folder"));
+  program_.write("empty/a.txt", "");
+  const Outcome none = program_.run({"report", "empty"});
+  EXPECT_EQ(none.status, 2);
+  EXPECT_THAT(none.err, HasSubstr("sweep.json, report.json, accuracy.json or stress.json"));
+}
+
 TEST_F(RunPage, IsLeftOutOnRequest) {
   ASSERT_EQ(run({"--no-html"}).status, 0);
   EXPECT_TRUE(exists("out/report.json"));
