@@ -68,8 +68,9 @@ class Account {
         access(EnergyPart::kStacks, static_cast<double>(resource.stack->pushed_bytes + resource.stack->popped_bytes),
                rays_kib_);
     for (const report::Cache& cache : r_.memory->caches)
-      access(EnergyPart::kL2, static_cast<double>(c_.memory.line_bytes) * static_cast<double>(cache.counts.lines),
-             l2_kib());
+      access(EnergyPart::kL2, line_bytes() * static_cast<double>(cache.counts.lines), l2_kib());
+    if (r_.memory->own_caches)
+      access(EnergyPart::kL1, line_bytes() * static_cast<double>(r_.memory->own_caches->counts.lines), l1_kib());
   }
 
   void packets() {
@@ -92,14 +93,19 @@ class Account {
       parts_[EnergyPart::kDram].add(memory_times_ * bytes, pj(hbm ? Cost::kHbm : Cost::kDram));
       return;
     }
-    const std::int64_t sharing = row.from == "L2" || row.to == "L2"
-                                     ? std::min(c_.memory.shared_by, c_.topology.resources)
-                                     : c_.topology.resources;
     parts_[EnergyPart::kMessages].add(bytes, pj(Cost::kHop));
-    parts_[EnergyPart::kMessageWires].add(bytes * link_mm_ * std::sqrt(static_cast<double>(sharing)) / 2,
+    parts_[EnergyPart::kMessageWires].add(bytes * link_mm_ * std::sqrt(static_cast<double>(sharing(row))) / 2,
                                           pj(Cost::kWire));
     if (row.what == "new rays" || row.what == "completed rays") access(EnergyPart::kRayStore, bytes, rays_kib_);
+    if (row.to == "L1") access(EnergyPart::kL1, bytes, l1_kib());
     if (row.what == "shape data") access(EnergyPart::kShapeBuffers, bytes, buffer_kib());
+  }
+
+  /// The resources that share the parts between which the messages go.
+  std::int64_t sharing(const ByteRow& row) const {
+    const auto is = [&](std::string_view name) { return row.from == name || row.to == name; };
+    if (is("L2")) return std::min(c_.memory.shared_by, c_.topology.resources);
+    return is("L1") ? 1 : c_.topology.resources;
   }
 
   void shading() {
@@ -115,6 +121,8 @@ class Account {
   }
 
   double l2_kib() const { return static_cast<double>(c_.memory.l2_kib) / static_cast<double>(c_.memory.l2_banks); }
+  double l1_kib() const { return static_cast<double>(c_.memory.l1_kib); }
+  double line_bytes() const { return static_cast<double>(c_.memory.line_bytes); }
   double buffer_kib() const { return static_cast<double>(c_.memory.shape_buffer_kib); }
 
   const report::Report& r_;

@@ -276,7 +276,7 @@ void energy_lines(Table& table, const Report& report) {
     for (const EnergyPart part : parts) to += e.parts.others[static_cast<std::size_t>(part)].joules;
   };
   using enum EnergyPart;
-  sum(stores, {kRayStore, kCollections, kShapeBuffers, kStacks, kL2});
+  sum(stores, {kRayStore, kCollections, kShapeBuffers, kStacks, kL1, kL2});
   sum(links, {kPorts, kWires, kMessages, kMessageWires});
   sum(dram, {kDram, kActivations});
   sum(shading, {kShades, kProducts, kLookups});

@@ -153,7 +153,7 @@ void energy_words(Words& w) {
       .item("N Mrays a joule", "energy.rays_per_joule")
       .item("tests N", "energy.parts", "part of the energy that the test units take")
       .item("stores N", "energy.parts",
-            "part of the ray stores, collections, shape buffers, stacks and L2 caches: their accesses")
+            "part of the ray stores, collections, shape buffers, stacks and caches: their accesses")
       .item("wires N", "energy.parts", "part of the packets and other messages: their ports and wires")
       .item("DRAM N", "energy.parts", "part of the memory: bytes and activations")
       .item("shading N", "energy.parts", "part of the shader workers");

@@ -14,6 +14,7 @@ enum class EnergyPart : std::uint8_t {
   kCollections,
   kShapeBuffers,
   kStacks,
+  kL1,
   kL2,
   kPorts,
   kWires,
@@ -37,6 +38,9 @@ inline constexpr auto kEnergyParts = std::to_array<EnergyPartRow>({
      "accesses of 64 bits to the shape buffers: the shape data that comes, and 64 bytes whenever a "
      "strip or transform is needed"},
     {"stacks", "accesses of 64 bits to the stacks of rays"},
+    {"l1",
+     "accesses of 64 bits to the resources' own caches: lines looked up, and lines that come from the L2; absent "
+     "without them"},
     {"l2", "accesses of 64 bits to the L2: lines looked up, and lines that come from memory"},
     {"ports", "bytes of packets through the ports of links"},
     {"wires", "bytes of packets times the millimetres of their links"},
@@ -74,8 +78,12 @@ struct EnergyParts {
 template <class V>
 void describe(V& v, const EnergyParts& r) {
   for (const UnitKindRow& row : kUnitKinds) v.section(row.work, r.units[row.kind], row.meaning);
+  constexpr auto kOwnCaches = static_cast<std::size_t>(EnergyPart::kL1);
   for (std::size_t i = 0; i < kEnergyParts.size(); ++i)
-    v.section(kEnergyParts[i].key, r.others[i], kEnergyParts[i].meaning);
+    if (i == kOwnCaches)
+      v.section_if(r.others[i].events > 0, kEnergyParts[i].key, r.others[i], kEnergyParts[i].meaning);
+    else
+      v.section(kEnergyParts[i].key, r.others[i], kEnergyParts[i].meaning);
 }
 
 struct Energy {

@@ -61,7 +61,7 @@ struct FetchKinds {
   MessageKind requests, data;
   /// `width` of the wires of requests in bytes a cycle.
   FetchKinds(ChannelList& list, const MemoryConfig& config, std::uint64_t width)
-      : requests(list.carry({"shape requests", "resources", "L2", "request wires", width})),
+      : requests(list.carry({"shape requests", "resources", config.l1_kib > 0 ? "L1" : "L2", "request wires", width})),
         data(config.l1_kib > 0 ? list.carry({"shape data", "L1", "resources", "L1's port", l1_port_bytes(config)})
                                : list.carry({"shape data", "L2", "resources", "L2's port", l2_port_bytes(config)})) {}
 };

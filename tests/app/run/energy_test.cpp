@@ -139,6 +139,25 @@ TEST_F(EnergyRun, AreaIsOfTheConfiguredParts) {
   EXPECT_NEAR(both["area"]["parts"]["wires"]["mm2"].get<double>(), 2 * wires, 1e-9) << "twice a ring's wires";
 }
 
+// A line of an own cache is read from 16 KiB, and those that come from the L2 are written there. Its way to the
+// resource is half of a side of one of 2 mm.
+TEST_F(EnergyRun, OwnCachesAreReadAndWritten) {
+  const Json r = run("ring", {"memory.l1_kib=16"});
+  const Json &parts = r["energy"]["parts"], &own = r["memory"]["own_caches"];
+  EXPECT_NEAR(parts["l1"]["events"].get<double>(), 8 * (own["lines"].get<double>() + own["misses"].get<double>()), 0.5);
+  EXPECT_NEAR(parts["l1"]["pj_each"].get<double>(), 10 * std::sqrt(2), 1e-3);  // between 8 and 32 KiB
+  double all = 0, near = 0, at_l2 = 0;
+  for (const Json& row : r["bytes"]) {
+    if (row["over"] == "links" || row["from"] == "DRAM" || row["to"] == "DRAM") continue;
+    const bool l1 = row["from"] == "L1" || row["to"] == "L1", l2 = row["from"] == "L2" || row["to"] == "L2";
+    (l2 ? at_l2 : l1 ? near : all) += row["bytes"].get<double>();
+  }
+  EXPECT_GT(near, bytes_of(r, "shape requests"));
+  EXPECT_EQ(at_l2, bytes_of(r, "line requests of L1") + bytes_of(r, "lines for L1"));
+  EXPECT_NEAR(parts["message_wires"]["events"].get<double>(), near + (all + at_l2) * std::sqrt(8), 1);
+  EXPECT_FALSE(run("ring")["energy"]["parts"].contains("l1"));
+}
+
 // Each bank of a ray store has a port to the box units and one to the units for primitives.
 TEST_F(EnergyRun, ASecondPortTakesItsPlace) {
   const auto stores = [&](const std::string& banks) {
