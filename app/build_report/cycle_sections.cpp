@@ -120,11 +120,8 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (r.packets && trips.count() > 0) r.packets->latency = report::latency_of(trips);
   if (r.collections && properties_of(config.topology.shape).has_packets &&
       config.collections.when_full == WhenFull::kSpill) {
-    r.collections->spill_bytes_written = r.collections->spill_bytes_read = 0;
-    for (const ringbus::cycle::TileResult& tile : c.tiles) {
-      *r.collections->spill_bytes_written += tile.spilled.written;
-      *r.collections->spill_bytes_read += tile.spilled.read;
-    }
+    SpillBytes& spill = r.collections->spill.emplace();
+    for (const ringbus::cycle::TileResult& tile : c.tiles) spill += tile.spilled;
   }
   if (r.collections && c.ids) {
     r.collections->ids_at_once = c.ids->most;

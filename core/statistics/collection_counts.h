@@ -20,4 +20,18 @@ struct CollectionCounts {
   friend bool operator==(const CollectionCounts&, const CollectionCounts&) = default;
 };
 
+/// Bytes of collection entries that were moved to memory and back.
+struct SpillBytes {
+  std::uint64_t written = 0, read = 0;
+
+  static constexpr auto counters() {
+    using C = SpillBytes;
+    return std::array{
+        Counter{"spill_bytes_written", &C::written, "bytes", "bytes of spilled entries sent to memory"},
+        Counter{"spill_bytes_read", &C::read, "bytes", "bytes of spilled entries read back"},
+    };
+  }
+  friend bool operator==(const SpillBytes&, const SpillBytes&) = default;
+};
+
 }  // namespace carousel

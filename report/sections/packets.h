@@ -37,7 +37,8 @@ void describe(V& v, const Packets& r) {
 struct Collections {
   CollectionCounts counts;  ///< summed over all resources; peaks are the greatest of any
   double fullness_mean = 0;
-  std::optional<std::uint64_t> ids_at_once{}, ids_interval{}, spill_bytes_written{}, spill_bytes_read{};
+  std::optional<std::uint64_t> ids_at_once{}, ids_interval{};
+  std::optional<SpillBytes> spill{};  ///< summed over all resources
   std::optional<Distribution> age{};
 };
 
@@ -52,8 +53,7 @@ void describe(V& v, const Collections& r) {
           "most ray IDs in the collections of all resources together, looked at in one of every ids_interval cycles");
   v.field("ids_interval", r.ids_interval, "cycles", "cycles from one look at all collections to the next");
   v.field("spilled", r.counts.spilled, "ray IDs", "ray IDs stored in blocks beyond the capacity");
-  v.field("spill_bytes_written", r.spill_bytes_written, "bytes", "bytes of spilled entries sent to memory");
-  v.field("spill_bytes_read", r.spill_bytes_read, "bytes", "bytes of spilled entries read back");
+  describe_if_any(v, r.spill);
   v.section("age", r.age,
             "time that a collection had waited when a packet was taken from it, since its first ray came or the last "
             "packet was taken (cycle)");

@@ -19,4 +19,11 @@ namespace carousel::report {
 // needs a simulated clock. Counter structs of core/statistics describe themselves by their lists.
 using carousel::describe;
 
+/// Describes counters that only some runs have, as keys of the section.
+template <class V, CounterStruct S>
+void describe_if_any(V& v, const std::optional<S>& counts) {
+  for (const Counter<S>& row : kCounters<S>)
+    v.field(row.name, counts ? std::optional(row.value(*counts)) : std::nullopt, row.unit, row.meaning);
+}
+
 }  // namespace carousel::report

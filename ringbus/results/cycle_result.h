@@ -9,6 +9,7 @@
 #include "core/numeric/log2_histogram.h"
 #include "core/statistics/byte_row.h"
 #include "core/statistics/cache_counts.h"
+#include "core/statistics/collection_counts.h"
 #include "core/statistics/distributor_counts.h"
 #include "core/statistics/memory_counts.h"
 #include "core/statistics/packet_kind_counts.h"
@@ -49,12 +50,6 @@ struct BankUse {
   std::array<Cycle, kTileStates> busy_in{};  ///< by TileState; they add up to `busy`
   std::uint64_t passes = 0, lanes = 0;       ///< tests, and the lanes of the vectors in which they were started
   friend bool operator==(const BankUse&, const BankUse&) = default;
-};
-
-/// Bytes of collection entries that a resource moved to memory and back.
-struct SpillBytes {
-  std::uint64_t written = 0, read = 0;
-  friend bool operator==(const SpillBytes&, const SpillBytes&) = default;
 };
 
 struct TileResult {

@@ -2,9 +2,9 @@
 
 #include <cstdint>
 
+#include "core/statistics/collection_counts.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/resource/collections/collection_store.h"
-#include "ringbus/results/cycle_result.h"
 
 namespace carousel::ringbus::cycle {
 
