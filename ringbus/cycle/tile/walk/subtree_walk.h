@@ -6,6 +6,7 @@
 
 #include "accel/structure/accel.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/types/unit_kind.h"
 #include "ringbus/cycle/testers/unit_passes.h"
 #include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/resource/resource.h"
@@ -17,7 +18,7 @@ struct WalkStep {
   accel::NodeKey key;
   RayTests tests;  ///< with an inversion wherever the ray needs one, also if another ray's will do
 };
-static_assert(sizeof(WalkStep) == 24);
+static_assert(sizeof(WalkStep) <= sizeof(accel::NodeKey) + 2 * kUnitKinds.size() + 4);  // as small as it can be
 
 /// The ways of a visit's rays, one behind the other.
 struct WalkSteps {
