@@ -76,6 +76,12 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
                                      (kIdBytes * static_cast<double>(distributor.queue) +
                                       kHeaderBytes * static_cast<double>(distributor.results)) /
                                      kKiB);
+  Parts::for_each([&]<class P>(std::size_t i) {
+    const auto& keys = c.parts.of<P>();
+    if (!P::is_built(keys)) return;
+    const PartArea each = P::area(keys, costs_of(c));
+    parts.declared[i] = {static_cast<double>(caches) * each.size, static_cast<double>(caches) * each.mm2};
+  });
   report::AreaOf& wires = parts[AreaPart::kWires];
   wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm *
                (wire_lengths(topology, c.topology.link.bytes_per_cycle) +

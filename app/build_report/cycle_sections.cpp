@@ -79,8 +79,9 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   report::Memory out;
   for (const ringbus::cycle::TileResult& tile : c.tiles) out.shape_buffers.counts += tile.shapes;
   const std::uint64_t port_cycles = c.cycles * static_cast<std::uint64_t>(config.l2_banks);
-  for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, port_cycles)});
-  if (c.own_caches) out.own_caches = {*c.own_caches, ratio(c.own_caches->port_busy, c.cycles * c.tiles.size())};
+  for (const CacheCounts& cache : c.caches) out.caches.push_back({cache, ratio(cache.port_busy, port_cycles), {}});
+  for (std::size_t i = 0; i < c.fetched_ahead.size(); ++i) out.caches[i].ahead = c.fetched_ahead[i];
+  if (c.own_caches) out.own_caches = {*c.own_caches, ratio(c.own_caches->port_busy, c.cycles * c.tiles.size()), {}};
   out.counts = c.memory;
   out.dram_utilisation = ratio(c.memory.busy, c.cycles);
   out.ray_data = c.ray_data;
@@ -128,6 +129,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     r.collections->ids_interval = c.ids->interval;
   }
   r.memory = memory(c, config.memory);
+  r.parts = c.parts;
   r.bytes = c.bytes;
   r.shading.products = c.shading.products;
   r.shading.lookups = c.shading.lookups;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string_view>
 
 #include "app/area/machine_area.h"
@@ -27,6 +28,7 @@ class Account {
       : r_(r),
         c_(config),
         link_mm_(link_mm),
+        costs_(costs_of(config)),
         memory_times_(memory_times),
         rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16 / static_cast<double>(own_testers(config))) {
   }
@@ -39,12 +41,16 @@ class Account {
     shading();
     for (const auto [kind, part] : parts_.units) part.rays = static_cast<double>(r_.rays.completed);
     for (report::EnergyOf& part : parts_.others) part.rays = static_cast<double>(r_.rays.completed);
+    for (std::optional<report::EnergyOf>& part : parts_.declared)
+      if (part) part->rays = static_cast<double>(r_.rays.completed);
     return parts_;
   }
 
  private:
-  double pj(Cost of) const { return cost(c_, of); }
-  void access(EnergyPart part, double bytes, double kib) { parts_[part].add(bytes / kWord, sram_access_pj(c_, kib)); }
+  double pj(Cost of) const { return costs_.of(of); }
+  void access(EnergyPart part, double bytes, double kib) {
+    parts_[part].add(bytes / kWord, costs_.sram_access_pj(kib));
+  }
 
   void tests() {
     if (!r_.tests) return;
@@ -68,9 +74,17 @@ class Account {
         access(EnergyPart::kStacks, static_cast<double>(resource.stack->pushed_bytes + resource.stack->popped_bytes),
                rays_kib_);
     for (const report::Cache& cache : r_.memory->caches)
-      access(EnergyPart::kL2, line_bytes() * static_cast<double>(cache.counts.lines), l2_kib());
+      access(EnergyPart::kL2,
+             line_bytes() * static_cast<double>(cache.counts.lines) +
+                 kWord * static_cast<double>(cache.ahead ? cache.ahead->asked : 0),
+             l2_kib());
     if (r_.memory->own_caches)
       access(EnergyPart::kL1, line_bytes() * static_cast<double>(r_.memory->own_caches->counts.lines), l1_kib());
+    Parts::for_each([&]<class P>(std::size_t i) {
+      if (!r_.parts.of<P>()) return;
+      const PartEnergy energy = P::energy(*r_.parts.of<P>(), c_.parts.of<P>(), costs_);
+      parts_.declared[i].emplace().add(energy.events, energy.pj_each);
+    });
   }
 
   void packets() {
@@ -101,10 +115,13 @@ class Account {
     if (row.what == "shape data") access(EnergyPart::kShapeBuffers, bytes, buffer_kib());
   }
 
-  /// The resources that share the parts between which the messages go.
+  /// The resources that share the parts between which the messages go. Parts that declare themselves are beside the
+  /// L2s.
   std::int64_t sharing(const ByteRow& row) const {
     const auto is = [&](std::string_view name) { return row.from == name || row.to == name; };
-    if (is("L2")) return std::min(c_.memory.shared_by, c_.topology.resources);
+    bool at_l2 = is("L2");
+    Parts::for_each([&]<class P>(std::size_t) { at_l2 |= is(P::kName); });
+    if (at_l2) return std::min(c_.memory.shared_by, c_.topology.resources);
     return is("L1") ? 1 : c_.topology.resources;
   }
 
@@ -127,7 +144,9 @@ class Account {
 
   const report::Report& r_;
   const Config& c_;
-  double link_mm_, memory_times_, rays_kib_;
+  double link_mm_;
+  Costs costs_;
+  double memory_times_, rays_kib_;
   report::EnergyParts parts_;
 };
 
@@ -148,6 +167,7 @@ double joules_of(const report::EnergyParts& parts) {
   double joules = 0;
   for (const auto [kind, part] : parts.units) joules += part.joules;
   for (const report::EnergyOf& part : parts.others) joules += part.joules;
+  for (const std::optional<report::EnergyOf>& part : parts.declared) joules += part ? part->joules : 0;
   return joules;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -26,6 +27,7 @@
 #include "core/config/fields/testers.h"
 #include "core/config/fields/topology.h"
 #include "core/config/fields/workload.h"
+#include "core/config/parts.h"
 
 namespace carousel {
 
@@ -61,6 +63,7 @@ struct Config {
   BundlesConfig bundles;
   TestersConfig testers;
   MemoryConfig memory;
+  PartKeys<Parts> parts;
   ShadingConfig shading;
   FaultsConfig faults;
   EnergyConfig energy;
@@ -113,6 +116,7 @@ void describe(V& v, Config& c) {
   v.section("bundles", c.bundles, "Bundles of similar rays that are tested as one.");
   v.section("testers", c.testers, "The test units of a resource. A bare number is the number of units.");
   v.section("memory", c.memory, "The caches and the memory of the simulated machine.");
+  Parts::for_each([&]<class P>(std::size_t) { v.section(P::kSection, c.parts.template of<P>(), P::kMeaning); });
   v.section("shading", c.shading, "The shader workers and the effects.");
   v.choice("primary", c.primary,
            "The first surface that a pixel shows is found by camera rays, or by a rasteriser, which leaves the other "

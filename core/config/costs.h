@@ -1,8 +1,7 @@
 #pragma once
 
-#include <cmath>
-
 #include "core/config/config.h"
+#include "core/costs/costs.h"
 
 namespace carousel {
 
@@ -47,16 +46,11 @@ inline double cost(const Config& config, Cost cost) {
   return static_cast<double>(cost_value(config, cost).value);
 }
 
-/// Picojoules of an access of 64 bits to a store of `kib`: interpolated between the sizes of the table, with the
-/// logarithms of size and energy, and continued beyond them.
-inline double sram_access_pj(const Config& config, double kib) {
-  const double e8 = cost(config, Cost::kSram8), e32 = cost(config, Cost::kSram32),
-               e1024 = cost(config, Cost::kSram1024);
-  const auto between = [&](double low_kib, double low, double high_kib, double high) {
-    if (low <= 0 || high <= 0) return low;
-    return low * std::pow(high / low, std::log(kib / low_kib) / std::log(high_kib / low_kib));
-  };
-  return kib < 32 ? between(8, e8, 32, e32) : between(32, e32, 1024, e1024);
+/// All numbers of this machine.
+inline Costs costs_of(const Config& config) {
+  Costs out;
+  for (const CostRow& row : kCostTable) out.values[cost_index(row.cost)] = cost(config, row.cost);
+  return out;
 }
 
 }  // namespace carousel

@@ -265,6 +265,18 @@ std::string_view name_in(std::string_view key, std::string_view section) {
   return key.substr(0, key.find('.'));
 }
 
+/// Tells why a key of a part that declares itself has no effect.
+std::optional<std::string_view> part_unused(const C& c, const S& s, std::string_view key) {
+  std::optional<std::string_view> why;
+  Parts::for_each([&]<class P>(std::size_t) {
+    if (!lies_in(key, P::kSection)) return;
+    if (!kCycle.holds(c, s)) why = kCycle.otherwise;
+    const std::string_view name = name_in(key, P::kSection);
+    if (!why && !name.empty() && name != P::kSwitch && !P::is_built(c.parts.of<P>())) why = P::kAbsent;
+  });
+  return why;
+}
+
 /// Tells why a key of a test unit, or of the energy or area that a test or a unit costs, has no effect.
 std::optional<std::string_view> units_unused(const C& c, const S& s, std::string_view key) {
   const bool cost = lies_in(key, "energy") || lies_in(key, "area");
@@ -289,6 +301,7 @@ std::optional<std::string_view> unused_because(const Config& c, const SceneFacts
       return workload.otherwise;
   for (const Row& row : kRows)
     if (lies_in(key, row.key) && !row.needed.holds(c, scene)) return row.needed.otherwise;
+  if (const auto why = part_unused(c, scene, key)) return why;
   return units_unused(c, scene, key);
 }
 

@@ -4,6 +4,23 @@
 
 namespace carousel {
 
+/// Lines that a part asked a cache to fetch ahead of those who need them. CacheCounts has none of them but in the
+/// cycles of its ports.
+struct AheadCounts {
+  std::uint64_t asked = 0, found = 0, fetched = 0, dropped = 0;
+
+  static constexpr auto counters() {
+    using C = AheadCounts;
+    return std::array{
+        Counter{"asked", &C::asked, "lines", "lines that the cache was asked to fetch ahead"},
+        Counter{"found", &C::found, "lines", "those that were here, or on their way from memory"},
+        Counter{"fetched", &C::fetched, "lines", "those that were fetched from memory"},
+        Counter{"dropped", &C::dropped, "lines", "those for which their bank had no miss register (memory.l2_mshrs)"},
+    };
+  }
+  friend bool operator==(const AheadCounts&, const AheadCounts&) = default;
+};
+
 /// Use of a cache of shape data.
 struct CacheCounts {
   std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0, written = 0, kept = 0, write_fetches = 0,

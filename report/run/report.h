@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/config/parts.h"
 #include "core/statistics/raster_counts.h"
 #include "report/schema/checksum.h"
 #include "report/schema/document_version.h"
@@ -61,6 +62,7 @@ struct Report {
   std::optional<std::vector<Rank>> ranks;
   std::optional<std::vector<RankLink>> rank_links;
   std::optional<Memory> memory;
+  PartCounts<Parts> parts;
   std::optional<std::vector<ByteRow>> bytes;
   std::optional<TimeSeries> time_series;
   std::optional<Traffic> traffic;
@@ -109,6 +111,7 @@ void describe(V& v, const Report& r) {
   v.section("ranks", r.ranks, "each process of a run with engine.transport: mpi");
   v.section("rank_links", r.rank_links, "messages from each of them to each other");
   v.section("memory", r.memory, "caches and memory of the simulated machine");
+  Parts::for_each([&]<class P>(std::size_t) { v.section(P::kSection, r.parts.template of<P>(), P::kCountsMeaning); });
   v.section("bytes", r.bytes,
             "every byte that a part of the simulated machine hands to another, by kind of message (cycle)");
   v.section("time_series", r.time_series, "quantities of the machine's parts over the run (cycle)");

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "report/run/part_table.h"
 #include "report/run/sampled_table.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
@@ -277,6 +278,7 @@ void energy_lines(Table& table, const Report& report) {
   };
   using enum EnergyPart;
   sum(stores, {kRayStore, kCollections, kShapeBuffers, kStacks, kL1, kL2});
+  for (const std::optional<EnergyOf>& part : e.parts.declared) stores += part ? part->joules : 0;
   sum(links, {kPorts, kWires, kMessages, kMessageWires});
   sum(dram, {kDram, kActivations});
   sum(shading, {kShades, kProducts, kLookups});
@@ -287,6 +289,9 @@ void energy_lines(Table& table, const Report& report) {
   Items items;
   for (std::size_t i = 0; i < kAreaParts.size(); ++i)
     if (a.parts.of[i].mm2 > 0) items.add(kAreaParts[i].name, percent(ratio(a.parts.of[i].mm2, a.mm2)));
+  Parts::for_each([&]<class P>(std::size_t i) {
+    if (a.parts.declared[i]) items.add(P::kName, percent(ratio(a.parts.declared[i]->mm2, a.mm2)));
+  });
   table.line("area", "{:.4g} mm2   {:.4g} Mrays/s on each   {}", a.mm2, a.mrays_per_second_per_mm2.value_or(0),
              items.text());
 }
@@ -378,6 +383,7 @@ std::string report_table(const Report& report) {
   if (report.shading.proof) proof_line(table, *report.shading.proof);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
+  table.text(part_table(report.parts));
   if (report.host.ray_queues) ray_queue_lines(table, *report.host.ray_queues);
   if (report.bytes) byte_lines(table, *report.bytes, report.rays.completed);
   table.gap();

@@ -2,6 +2,7 @@
 
 #include <string_view>
 
+#include "core/config/parts.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/statistics/stall_counts.h"
 #include "core/types/unit_kind.h"
@@ -153,7 +154,8 @@ void energy_words(Words& w) {
       .item("N Mrays a joule", "energy.rays_per_joule")
       .item("tests N", "energy.parts", "part of the energy that the test units take")
       .item("stores N", "energy.parts",
-            "part of the ray stores, collections, shape buffers, stacks and caches: their accesses")
+            "part of the ray stores, collections, shape buffers, stacks and caches, and of parts such as a prefetcher: "
+            "their accesses")
       .item("wires N", "energy.parts", "part of the packets and other messages: their ports and wires")
       .item("DRAM N", "energy.parts", "part of the memory: bytes and activations")
       .item("shading N", "energy.parts", "part of the shader workers");
@@ -161,6 +163,10 @@ void energy_words(Words& w) {
   for (const AreaPartRow& row : kAreaParts)
     w.item(std::string(row.name) + " N", std::string("area.parts.") + row.key,
            std::string("part of the area: ") + row.meaning);
+  Parts::for_each([&]<class P>(std::size_t) {
+    w.item(std::string(P::kName) + " N", std::string("area.parts.") + P::kSection,
+           std::string("part of the area: ") + P::kAreaMeaning);
+  });
 }
 
 void test_words(Words& w) {
@@ -240,6 +246,11 @@ void resource_words(Words& w) {
       .item("N refused", "links[].stalled", "sends that a full link refused")
       .item("N cycles stalled", "links[].stalled",
             "cycles in which a packet waited for a place in its link, all links together");
+  Parts::for_each([&]<class P>(std::size_t) {
+    w.line(P::kName);
+    for (const Counter<typename P::Counts>& row : kCounters<typename P::Counts>)
+      w.item(std::string(row.name) + " N", std::string(P::kSection) + "." + row.name);
+  });
   w.line("queues")
       .item("completed rays through * of N", "host.ray_queues.completed.depth",
             "design of the queue from the resources to the shader workers, and batches that it holds")

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <optional>
 
+#include "core/config/parts.h"
 #include "core/types/unit_kind.h"
 #include "report/sections/visitor.h"
 
@@ -41,7 +44,10 @@ inline constexpr auto kEnergyParts = std::to_array<EnergyPartRow>({
     {"l1",
      "accesses of 64 bits to the resources' own caches: lines looked up, and lines that come from the L2; absent "
      "without them"},
-    {"l2", "accesses of 64 bits to the L2: lines looked up, and lines that come from memory"},
+    {"l2",
+     "accesses of 64 bits to the L2: lines looked up, lines that come from memory, and one for each line that a part "
+     "asks "
+     "for ahead"},
     {"ports", "bytes of packets through the ports of links"},
     {"wires", "bytes of packets times the millimetres of their links"},
     {"messages", "bytes between resources, L2, ray control and shading, through ports"},
@@ -72,6 +78,7 @@ void describe(V& v, const EnergyOf& r) {
 struct EnergyParts {
   PerUnit<EnergyOf> units{};
   std::array<EnergyOf, kEnergyParts.size()> others{};
+  PerPart<Parts, EnergyOf> declared{};  ///< of parts that declare themselves
   EnergyOf& operator[](EnergyPart part) { return others[static_cast<std::size_t>(part)]; }
 };
 
@@ -84,6 +91,7 @@ void describe(V& v, const EnergyParts& r) {
       v.section_if(r.others[i].events > 0, kEnergyParts[i].key, r.others[i], kEnergyParts[i].meaning);
     else
       v.section(kEnergyParts[i].key, r.others[i], kEnergyParts[i].meaning);
+  Parts::for_each([&]<class P>(std::size_t i) { v.section(P::kSection, r.declared[i], P::kEnergyMeaning); });
 }
 
 struct Energy {
@@ -147,10 +155,12 @@ void describe(V& v, const AreaOf& r) {
 
 struct AreaParts {
   std::array<AreaOf, kAreaParts.size()> of{};
+  PerPart<Parts, AreaOf> declared{};  ///< of parts that declare themselves
   AreaOf& operator[](AreaPart part) { return of[static_cast<std::size_t>(part)]; }
   double mm2() const {
     double sum = 0;
     for (const AreaOf& part : of) sum += part.mm2;
+    for (const std::optional<AreaOf>& part : declared) sum += part ? part->mm2 : 0;
     return sum;
   }
 };
@@ -158,6 +168,7 @@ struct AreaParts {
 template <class V>
 void describe(V& v, const AreaParts& r) {
   for (std::size_t i = 0; i < kAreaParts.size(); ++i) v.section(kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
+  Parts::for_each([&]<class P>(std::size_t i) { v.section(P::kSection, r.declared[i], P::kAreaMeaning); });
 }
 
 struct Area {

@@ -158,9 +158,11 @@ class CycleRun {
     for (const auto& cache : machine_.memory().caches()) {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());
+      if (!machine_.parts().ahead_at(c.caches.size() - 1).empty()) c.fetched_ahead.push_back(cache->ahead());
     }
     for (const auto& cache : machine_.memory().own_caches())
       (c.own_caches ? *c.own_caches : c.own_caches.emplace()) += cache->statistics();
+    c.parts = machine_.parts().counts();
     c.bytes = byte_ledger(machine_);
     if (kChecked && complete) {
       check_byte_ledger(c.bytes);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/config/parts.h"
 #include "core/numeric/latency_histogram.h"
 #include "core/numeric/log2_histogram.h"
 #include "core/statistics/byte_row.h"
@@ -113,6 +114,8 @@ struct CycleResult {
   std::vector<LinkUse> links;
   std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
+  std::vector<AheadCounts> fetched_ahead;  ///< by cache, if a part asks for lines ahead
+  PartCounts<Parts> parts;
   std::optional<CacheCounts> own_caches;                 ///< sum over resources, if they have caches of their own
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   MemoryCounts memory;

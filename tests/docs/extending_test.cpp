@@ -1,26 +1,20 @@
 // The examples of docs/extending.md, taken from the page when cmake configures and used through the public interfaces.
-#include <array>
-#include <memory>
-#include <optional>
+#include <fstream>
+#include <iterator>
 #include <set>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "core/config/load/load.h"
 #include "core/config/reader.h"
-#include "core/config/row_walk.h"
 #include "core/config/tree/tree.h"
 #include "own_counts.h"
 #include "own_effect.h"
 #include "own_policy.h"
-#include "own_prefetcher.h"
 #include "own_section.h"
 #include "own_topology.h"
 #include "own_unit.h"
-#include "ringbus/cycle/memory/memory_agent.h"
-#include "ringbus/time/windows.h"
 #include "shading/effects/effects_plan.h"
 #include "shading/surface/material_properties.h"
 
@@ -104,162 +98,18 @@ TEST(Extending, AUnitKindTakesTheTimesOfItsRow) {
   EXPECT_EQ(bank.reserve(100, 1).first, 115u);
 }
 
-namespace prefetching {
-
-using namespace ringbus;
-using namespace ringbus::cycle;
-
-/// Asks for every third line, the next when the last has come, and tells the prefetcher, if there is one.
-class Reader final : public Agent {
- public:
-  Reader(Channel<FetchRequest>& requests, Channel<FetchAnswer>& answers, Channel<PrefetchHint>* hints)
-      : requests_(requests), answers_(answers), hints_(hints) {}
-  Cycle next() const override { return asked_ == 0 ? 1 : answers_.next(); }
-  bool polled() const override { return false; }
-  void run(Cycle end) override {
-    for (Cycle now; (now = next()) < end;) {
-      if (asked_ > 0) answers_.take(), done_ = now;
-      if (asked_ == kLines) return;
-      const std::uint64_t line = 1000 + 3 * asked_++;
-      requests_.send(now + 1, {line, 1});
-      if (hints_ != nullptr) hints_->send(now + 1, {line});
-    }
-  }
-  std::string describe() const override { return ""; }
-  Cycle done() const { return done_; }
-  static constexpr std::uint64_t kLines = 200;
-
- private:
-  Channel<FetchRequest>& requests_;
-  Channel<FetchAnswer>& answers_;
-  Channel<PrefetchHint>* hints_;
-  std::uint64_t asked_ = 0;
-  Cycle done_ = 0;
-};
-
-struct Outcome {
-  Cycle cycles = 0;
-  CacheCounts cache;
-  PrefetchCounts counts;
-  std::vector<ByteRow> rows;
-};
-
-/// The reader, an L2 and its memory on two threads; `prefetch`: null for a machine without a prefetcher.
-Outcome run(const PrefetchConfig* prefetch) {
-  MemoryConfig memory;
-  memory.l2_kib = 16;
-  memory.l2_latency_cycles = 20;
-  memory.dram_latency_cycles = 200;
-  const LinkConfig link;
-  enum Number : std::uint32_t { kReader, kCache, kMemory, kPrefetcher };
-  ChannelList list;
-  const FetchKinds kinds(list, memory, 32);
-  const MemoryKinds lines(list, memory);
-  const Cycle there = ShapeCache::request_latency(memory), back = ShapeCache::answer_latency(memory);
-  Channel<FetchRequest> requests(list.at(kinds.requests, {kReader, kCache, 1}));
-  Channel<FetchAnswer> answers(list.at(kinds.data, {kCache, kReader, back}));
-  Channel<std::uint64_t> down(list.at(lines.requests, {kCache, kMemory, MemoryAgent::request_latency(memory)}));
-  Channel<std::uint64_t> up(list.at(lines.lines, {kMemory, kCache, MemoryAgent::answer_latency(memory)}));
-  std::vector<ShapeCache::Client> clients{{&requests, &answers}};
-  std::optional<Channel<PrefetchHint>> hints;
-  std::optional<Channel<FetchRequest>> ahead;
-  std::optional<Channel<FetchAnswer>> come;
-  std::optional<StridePrefetcher> prefetcher;
-  if (prefetch != nullptr) {
-    const PrefetchKinds of(list, memory, link);
-    hints.emplace(list.at(of.hints, {kReader, kPrefetcher, 1}));
-    ahead.emplace(list.at(of.requests, {kPrefetcher, kCache, there}));
-    come.emplace(list.at(of.lines, {kCache, kPrefetcher, back}));
-    clients.push_back({&*ahead, &*come});
-    prefetcher.emplace(*prefetch, memory, link, StridePrefetcher::Ports{*hints, *ahead, *come});
-  }
-  ShapeCache cache(memory, clients, down, up);
-  const std::unique_ptr<MemoryAgent> dram = make_memory(memory, 1000, {{&down, &up}});
-  Reader reader(requests, answers, hints ? &*hints : nullptr);
-  std::vector<std::vector<Agent*>> parts{{&reader, &cache}, {dram.get()}};
-  std::vector<const Agent*> agents{&reader, &cache, dram.get()};
-  if (prefetcher) {
-    parts.back().push_back(&*prefetcher);
-    agents.push_back(&*prefetcher);
-  }
-  WakeupTable wakeups(parts);
-  list.connect(wakeups, agents);
-  run_windows(parts, wakeups, list.least_latency(), [](Cycle) { return true; });
-  return {reader.done(), cache.statistics(), prefetcher ? prefetcher->counts() : PrefetchCounts{}, list.rows()};
+std::string text_of(const std::string& path) {
+  std::ifstream file(std::string(CAROUSEL_SOURCE_DIR) + "/" + path);
+  return {std::istreambuf_iterator<char>(file), {}};
 }
 
-}  // namespace prefetching
-
-TEST(Extending, APartChangesTheMachineAndItsWiresAreInTheLedger) {
-  using prefetching::Reader;
-  const prefetching::Outcome without = prefetching::run(nullptr);
-  EXPECT_EQ(without.cache.misses, Reader::kLines);
-  const PrefetchConfig config;
-  const prefetching::Outcome with = prefetching::run(&config);
-  EXPECT_EQ(with.counts.hints, Reader::kLines);
-  EXPECT_EQ(with.counts.streams, 1u);
-  // Three lines until it is sure of the stride; from then on each line but the first of them is asked for ahead.
-  EXPECT_EQ(with.counts.lines, Reader::kLines - 3 + 2);
-  EXPECT_LT(2 * with.cycles, without.cycles);
-  Keys keys;
-  describe(keys, with.counts);
-  const decltype(keys.found) shown{
-      {"hints", with.counts.hints}, {"streams", with.counts.streams}, {"lines", with.counts.lines}};
-  EXPECT_EQ(keys.found, shown);
-  ASSERT_EQ(with.rows.size(), without.rows.size() + 3);
-  const std::array<std::uint64_t, 3> bytes{8 * with.counts.hints, 16 * with.counts.lines, 64 * with.counts.lines};
-  for (std::size_t i = 0; i < 3; ++i) {
-    const ByteRow& row = with.rows[without.rows.size() + i];
-    EXPECT_EQ(row.bytes, bytes[i]) << row.what;
-    EXPECT_EQ(row.bytes, row.bytes_taken) << row.what;
-  }
-}
-
-TEST(Extending, MoreLinesAheadHideMoreOfTheLatency) {
-  PrefetchConfig config;
-  const ringbus::Cycle two = prefetching::run(&config).cycles;
-  config.lines = 4;
-  EXPECT_LT(prefetching::run(&config).cycles, two);
-  config.lines = 0;
-  EXPECT_EQ(prefetching::run(&config).cycles, prefetching::run(nullptr).cycles);
-}
-
-/// Keeps the class by which each key of a section is relaxed.
-struct RelaxedKeys : config::RowWalk<RelaxedKeys> {
-  std::vector<std::pair<std::string, std::string>> found;
-  struct Rest {
-    RelaxedKeys& to;
-    std::string path;
-    template <class... Args>
-    Rest relax(const char* part, const Args&...) const {
-      to.found.emplace_back(path, part);
-      return *this;
-    }
-    template <class... Args>
-    Rest only(const Args&...) const {
-      return *this;
-    }
-  };
-  template <class T>
-  Rest rest(std::string path, T&) {
-    return {*this, std::move(path)};
-  }
-};
-
-TEST(Extending, APartSaysWhatIsRelaxedAndWhatItCosts) {
-  PrefetchConfig prefetch;
-  RelaxedKeys keys;
-  config::describe(keys, prefetch);
-  const decltype(keys.found) expected{{"lines", "prefetch"}};
-  EXPECT_EQ(keys.found, expected);
-  const Config none,
-      machine = load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\nenergy: {profile: n45}\n", "own.yaml"})
-                    .config;
-  EXPECT_EQ(ringbus::cycle::area_mm2(prefetch, none), 0);
-  prefetch.streams = 64;  // a KiB
-  EXPECT_FLOAT_EQ(static_cast<float>(ringbus::cycle::area_mm2(prefetch, machine)), 0.00456f);
-  EXPECT_GT(ringbus::cycle::joules({.hints = 2}, prefetch, machine), 0);
-  EXPECT_EQ(ringbus::cycle::joules({}, prefetch, machine), 0);
+// The page shows the declaration of a part of the product, which is compiled everywhere, and the list that names it.
+TEST(Extending, AWholePartIsShownAsItStandsInTheProduct) {
+  const std::string page = text_of("docs/extending.md"), part = text_of("ringbus/cycle/parts/stride_prefetcher/part.h"),
+                    list = text_of("core/config/parts.h");
+  EXPECT_NE(page.find("```cpp\n" + part + "```"), std::string::npos) << "part.h";
+  EXPECT_NE(page.find("using Parts = PartList<StridePrefetcherPart>;\n"), std::string::npos);
+  EXPECT_NE(list.find("using Parts = PartList<StridePrefetcherPart>;\n"), std::string::npos);
 }
 
 TEST(Extending, AnEffectFollowsFromItsRule) {

@@ -12,6 +12,7 @@ namespace carousel::report {
 struct Cache {
   CacheCounts counts;
   double port_utilisation = 0;
+  std::optional<AheadCounts> ahead{};
 };
 
 template <class V>
@@ -20,6 +21,7 @@ void describe(V& v, const Cache& r) {
   v.field("hit_fraction", ratio(r.counts.hits, r.counts.lines), "fraction", "hits over lines");
   v.field("port_utilisation", r.port_utilisation, "fraction",
           "fraction of the run's cycles in which a bank looked up lines, in the mean");
+  v.section("ahead", r.ahead, "lines that a part such as a prefetcher asked for ahead");
 }
 
 struct ShapeBuffers {

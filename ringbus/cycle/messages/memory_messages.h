@@ -22,12 +22,19 @@ struct FetchRequest {
   std::uint32_t skipped = 0;  ///< bytes of the first line before those that it writes
   std::uint32_t wanted = 0;   ///< with `others`: the bytes that it asks for, behind the skipped ones
   bool ends_by_flag = false;  ///< it names no number of lines: the cache finds the end of the strip
+  bool ahead = false;         ///< nobody waits for the lines: the cache only fetches those that it has not
   std::uint64_t others = 0;   ///< clients of the cache that get the same bytes without asking, a bit each
 
   /// Address 8, number of lines 4 or a strip's stride 2, tag 4, a mask of 8 where there are others, and what is
   /// written.
   std::uint64_t bytes() const { return (ends_by_flag ? 14 : 16) + std::uint64_t{written} + (others != 0 ? 8 : 0); }
 };
+/// A shape buffer has asked its cache for lines: for parts that hear of such requests.
+struct ShapeHint {
+  std::uint64_t first_line = 0;
+  std::uint64_t bytes() const { return 8; }
+};
+
 /// Set in the line number of a request to memory that writes the line, which has no answer.
 inline constexpr std::uint64_t kWriteLine = std::uint64_t{1} << 63;
 /// Set besides when all of the line is written, in a request of a resource's own cache to the L2.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
 #include "core/config/fields/topology.h"
 #include "ringbus/cycle/messages/any_hit_messages.h"
@@ -28,7 +29,8 @@ struct SidePorts {
   Channel<HelpNote>* help = nullptr;
   Channel<AnyHitQuestion>* questions = nullptr;  ///< null, like `answers`, with `any_hit: inline`
   Channel<AnyHitAnswer>* answers = nullptr;
-  Channel<PushedShapes>* pushed = nullptr;  ///< from its cache; null unless `memory.fetch: multicast`
+  Channel<PushedShapes>* pushed = nullptr;   ///< from its cache; null unless `memory.fetch: multicast`
+  std::vector<Channel<ShapeHint>*> hints{};  ///< to parts that hear of its requests for shapes
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -104,6 +104,8 @@ void ShapeCache::run(Cycle end) {
 void ShapeCache::take(std::uint32_t client, const FetchRequest& request, Cycle now) {
   if (request.written > 0) [[unlikely]]
     return take_write(request, now);
+  if (request.ahead) [[unlikely]]
+    return fetch_ahead(request, now);
   const std::uint32_t push = request.others == 0 ? 0 : answers_.begin_push(request);
   const std::uint32_t index = pending_.begin({client, request.tag, request.lines, 0, 0, request.lines, push});
   ++statistics_.requests;
@@ -135,6 +137,28 @@ void ShapeCache::take_write(const FetchRequest& request, Cycle now) {
       write_through(line, asks_a_cache_ && whole, now);
   }
   if (writes_back_) statistics_.kept += request.lines;
+}
+
+void ShapeCache::fetch_ahead(const FetchRequest& request, Cycle now) {
+  for (std::uint64_t line = request.first_line; line < request.first_line + request.lines; ++line) {
+    CacheBank& bank = banks_.of(line);
+    ++ahead_.asked;
+    if (!bank.waiting.empty()) {
+      ++ahead_.dropped;
+      continue;
+    }
+    const Cycle leaves = banks_.take_port(bank, now);
+    if (tags_.touch(line) || missing_.has(line)) {
+      ++ahead_.found;
+    } else if (!banks_.can_fetch(bank)) {
+      ++ahead_.dropped;
+    } else {
+      missing_.wait(line, kNobody);
+      to_memory_.add(leaves, line);
+      ++bank.on_their_way;
+      ++ahead_.fetched;
+    }
+  }
 }
 
 /// Returns whether the request writes all of its i-th line.

@@ -32,6 +32,9 @@ namespace carousel::ringbus::cycle {
 /// A resource's own cache (`memory.l1_kib`) is one too, with an L2 in the place of memory: own_cache() names its
 /// parameters. It asks for lines one by one, and what is written goes through.
 ///
+/// A part may ask it to fetch lines ahead. These are looked up as others are, and nobody gets them. One for which its
+/// bank has no miss register is dropped, and never makes others wait for a register.
+///
 /// With `memory.l2_sector_bytes` "line" here means a sector (see fetched_bytes()), but for replacement.
 class ShapeCache final : public Agent {
  public:
@@ -70,14 +73,16 @@ class ShapeCache final : public Agent {
 
   using Statistics = CacheCounts;
   const Statistics& statistics() const { return statistics_; }
+  const AheadCounts& ahead() const { return ahead_; }
 
  private:
   // In the place of a request's number, for a line that nobody waits for.
   static constexpr std::uint32_t kWriter = ~0u, kWholeWriter = kWriter - 1;  // writes a part of a line, or all of it
-  static constexpr std::uint32_t kNobody = kWriter - 2;                      // for a line behind the end of a strip
+  static constexpr std::uint32_t kNobody = kWriter - 2;  // for a line behind the end of a strip, or fetched ahead
 
   void take(std::uint32_t client, const FetchRequest& request, Cycle now);
   void take_line(std::uint32_t client, std::uint64_t request, Cycle now);
+  void fetch_ahead(const FetchRequest& request, Cycle now);
   void take_write(const FetchRequest& request, Cycle now);
   void write_through(std::uint64_t line, bool whole, Cycle now);
   bool writes_whole(const FetchRequest& request, std::uint64_t i) const;
@@ -97,6 +102,7 @@ class ShapeCache final : public Agent {
   std::vector<Client> clients_;
   Channel<std::uint64_t>& from_memory_;
   CacheCounts statistics_;
+  AheadCounts ahead_;
   TagArray tags_;
   CacheBanks banks_;
   PendingRequests pending_;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
@@ -18,7 +21,10 @@ class ShapePort {
       : requests_(*ports.fetch),
         answers_(*ports.fetched),
         wire_(link, ShapeCache::request_latency(ShapeCache::nearest(config))),
-        line_bytes_(fetched_bytes(config)) {}
+        line_bytes_(fetched_bytes(config)) {
+    for (Channel<ShapeHint>* hint : ports.hints)
+      hints_.push_back({hint, SideWire(link, ShapeCache::request_latency(config))});
+  }
 
   /// Asks for the lines of `span`; `tag` comes back when all are there. Requests are made in order of time.
   /// The clients in `others` get the bytes too.
@@ -33,6 +39,8 @@ class ShapePort {
     }
     requests_.send(wire_.send(message.bytes(), now), message);
     lines_ += message.lines;
+    if ((tag & kSpillTag) == 0)
+      for (HintPort& hint : hints_) hint.send({message.first_line}, now);
   }
   /// Writes `span`, likewise in order of time.
   void write(const ShapeSpan& span, Cycle now) {
@@ -47,6 +55,13 @@ class ShapePort {
   std::uint64_t lines() const { return lines_; }  ///< asked for
 
  private:
+  /// The near end of a wire to a part that hears of requests for shapes.
+  struct HintPort {
+    Channel<ShapeHint>* to;
+    SideWire wire;
+    void send(const ShapeHint& hint, Cycle now) { to->send(wire.send(hint.bytes(), now), hint); }
+  };
+
   FetchRequest lines_of(const ShapeSpan& span) const {
     const std::uint64_t first = span.address / line_bytes_, last = (span.address + span.bytes - 1) / line_bytes_;
     return {first, static_cast<std::uint32_t>(last - first + 1)};
@@ -56,6 +71,7 @@ class ShapePort {
   Channel<FetchAnswer>& answers_;
   SideWire wire_;
   std::uint64_t line_bytes_, lines_ = 0;
+  std::vector<HintPort> hints_;
 };
 
 }  // namespace carousel::ringbus::cycle

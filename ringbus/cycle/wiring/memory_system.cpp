@@ -7,7 +7,7 @@ namespace carousel::ringbus::cycle {
 MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
                            const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
                            const std::vector<ShapeCache::Client>& clients,
-                           const std::vector<ShapeCache::Client>& shading)
+                           const std::vector<std::vector<ShapeCache::Client>>& others)
     : shared_by_(static_cast<std::size_t>(config.shared_by)) {
   const auto channel = [&](auto& into, MessageKind kind, const ChannelEnds& ends) -> Channel<std::uint64_t>& {
     return *into.emplace_back(std::make_unique<Channel<std::uint64_t>>(list.at(kind, ends)));
@@ -36,7 +36,8 @@ MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const st
     };
     std::vector<ShapeCache::Client> askers;
     if (own.empty()) askers = sharers(clients);
-    if (!shading.empty()) askers.push_back(shading[caches_.size()]);
+    const std::vector<ShapeCache::Client>& more = others[caches_.size()];
+    askers.insert(askers.end(), more.begin(), more.end());
     const std::vector<ShapeCache::OwnCache> before = own.empty() ? std::vector<ShapeCache::OwnCache>{} : sharers(own);
     caches_.push_back(std::make_unique<ShapeCache>(config, before, std::move(askers), down, up));
     memory_clients.push_back({&down, &up});

@@ -59,7 +59,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
           channels_, config.topology.link, config.memory,
           config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty(),
           has_distributor(config) ? &config.testers.distributor : nullptr, config.collections.traversal)),
-      numbers_(agent_numbers(shared_.topology, config.memory)) {
+      numbers_(agent_numbers(shared_.topology, config.memory)),
+      parts_(channels_, numbers_, config.parts, config.memory, config.topology.link, shared_.topology.resources()) {
   const SideLatencies latencies(config.topology.link, ShapeCache::nearest(config.memory));
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ = std::make_unique<Recorder>(config.testers, has_distributor(config), shared_, observed);
@@ -69,7 +70,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     const ResourceId id(r);
     sides_.push_back(std::make_unique<SideChannels>(channels_, kinds_.side, latencies, numbers_, r,
                                                     config.shading.idle_resources_shade, calls_shader(config, accel)));
-    const SidePorts& side = sides.emplace_back(sides_.back()->ports());
+    SidePorts& side = sides.emplace_back(sides_.back()->ports());
+    side.hints = parts_.hints_of(r);
     cache_clients.push_back({side.fetch, side.fetched, side.pushed});
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     settings.blocks = shape_blocks_.get();
@@ -85,21 +87,23 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   }
   shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
   if (recorder_) shading_->record(recorder_->of_shading());
-  std::vector<ShapeCache::Client> ray_data_clients;
+  std::vector<std::vector<ShapeCache::Client>> others(numbers_.caches);  // by L2
   if (kinds_.ray_data) {
     std::vector<SidePorts> ends;
     for (std::uint32_t c = 0; c < numbers_.caches; ++c) {
       ray_data_.push_back(std::make_unique<RayDataChannels>(channels_, *kinds_.ray_data, config.memory, numbers_, c));
       const SidePorts& end = ends.emplace_back(ray_data_.back()->ports());
-      ray_data_clients.push_back({end.fetch, end.fetched});
+      others[c].push_back({end.fetch, end.fetched});
     }
     const RayStore& store = *shared_.stores.front();
     const std::uint32_t records = store.slots() + store.room().loaded + store.room().own;
     const RayData::Settings settings{config.memory, config.topology.link, records};
     shading_->keep_in_memory(std::make_unique<RayData>(settings, workload, ends));
   }
+  for (std::uint32_t c = 0; c < numbers_.caches; ++c)
+    for (Channel<FetchRequest>* ahead : parts_.ahead_at(c)) others[c].push_back({ahead});
   memory_ = std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
-                                           config.engine.clock_mhz, cache_clients, ray_data_clients);
+                                           config.engine.clock_mhz, cache_clients, others);
   memory_->memory().sample(observed.samples);
   memory_->memory().log(observed.memory);
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
@@ -120,6 +124,9 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
   share(memory_->caches());
   share(memory_->own_caches());
   share(network_.hubs());
+  // Each part goes to the thread of its L2.
+  for (std::size_t i = 0; i < parts_.agents().size(); ++i)
+    parts[i % numbers_.caches * threads / numbers_.caches].push_back(parts_.agents()[i]);
   parts.back().push_back(&memory_->memory());
   parts.back().push_back(shading_.get());
   return parts;
@@ -143,6 +150,7 @@ void SimulatedMachine::connect(WakeupTable& wakeups) const {
   add(memory_->own_caches());
   agents.push_back(&memory_->memory());
   agents.push_back(shading_.get());
+  agents.insert(agents.end(), parts_.agents().begin(), parts_.agents().end());
   channels_.connect(wakeups, agents);
 }
 
@@ -153,6 +161,7 @@ std::string SimulatedMachine::describe_waits() const {
   };
   for (const auto& resource : resources_) add(*resource);
   for (const auto& hub : network_.hubs()) add(*hub);
+  for (const Agent* part : parts_.agents()) add(*part);
   std::vector<Wait> waits;
   for_each_link([&](const Topology::Wire& wire, std::size_t port) {
     if (wire.from.value >= resources_.size()) return;

@@ -13,6 +13,7 @@
 #include "ringbus/cycle/tile/resource_agent.h"
 #include "ringbus/cycle/wiring/agent_numbers.h"
 #include "ringbus/cycle/wiring/machine_kinds.h"
+#include "ringbus/cycle/wiring/machine_parts.h"
 #include "ringbus/cycle/wiring/memory_system.h"
 #include "ringbus/cycle/wiring/network.h"
 #include "ringbus/cycle/wiring/ray_data_channels.h"
@@ -38,6 +39,7 @@ class SimulatedMachine {
   const ShapeMemory& shapes() const { return shape_memory_; }
   /// Null unless a timeline or the life of a ray is recorded.
   Recorder* recorder() const { return recorder_.get(); }
+  const MachineParts& parts() const { return parts_; }
   const ShadingAgent& shading() const { return *shading_; }
   const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
   /// Every channel between two agents.
@@ -86,6 +88,7 @@ class SimulatedMachine {
   Network network_;
   MachineKinds kinds_;
   AgentNumbers numbers_;
+  MachineParts parts_;
   std::vector<std::unique_ptr<SideChannels>> sides_;        // by resource
   std::vector<std::unique_ptr<RayDataChannels>> ray_data_;  // by L2
   std::vector<std::unique_ptr<ResourceAgent>> resources_;

@@ -116,6 +116,7 @@ TEST_F(TerminalTable, IsExplainedForBothEngines) {
 TEST_F(TerminalTable, IsExplainedForSpecialParts) {
   const std::string base = std::string(kSmall) + kCycle;
   EXPECT_TRUE(explained(base + "bundles: {size: 8}\n").contains("bundles"));
+  EXPECT_TRUE(explained(base + "prefetcher: {lines: 2}\nenergy: {profile: n7}\n").contains("prefetcher"));
   EXPECT_TRUE(explained(base + "cull_planes: {count: 2}\nprimary: raster\n").contains("cull planes"));
   EXPECT_TRUE(explained(base + "verify: effects\n").contains("all effects"));
   EXPECT_TRUE(explained(base + "verify: reference\nfaults: {links: {drop: 0.05}, compare: true}\n").contains("faults"));

@@ -158,6 +158,29 @@ TEST_F(EnergyRun, OwnCachesAreReadAndWritten) {
   EXPECT_FALSE(run("ring")["energy"]["parts"].contains("l1"));
 }
 
+// A prefetcher of 4 streams: its table, which each hint reads and writes in part, its wires, and the tags of the L2.
+TEST_F(EnergyRun, APrefetcherIsNotFree) {
+  const Json without = run("ring"), r = run("ring", {"prefetcher.lines=2", "memory.shared_by=4"});
+  EXPECT_FALSE(without["energy"]["parts"].contains("prefetcher") || without["area"]["parts"].contains("prefetcher"));
+  const Json &parts = r["energy"]["parts"], &counts = r["prefetcher"];
+  EXPECT_EQ(parts["prefetcher"]["events"], 10 * counts["hints"].get<double>());
+  EXPECT_GT(parts["prefetcher"]["joules"], 0);
+  EXPECT_NEAR(r["area"]["parts"]["prefetcher"]["mm2"].get<double>(), 2 * 64.0 / 1024 * 0.00456, 1e-7);  // two L2s
+  EXPECT_EQ(bytes_of(r, "prefetch hints"), 8 * counts["hints"].get<double>());
+  EXPECT_EQ(bytes_of(r, "prefetch requests"), 16 * counts["lines"].get<double>());
+  double lines = 0, asked = 0;
+  for (const Json& cache : r["memory"]["caches"]) {
+    asked += cache["ahead"]["asked"].get<double>();
+    lines += cache["lines"].get<double>() + cache["misses"].get<double>() + cache["ahead"]["fetched"].get<double>();
+  }
+  EXPECT_EQ(asked, counts["lines"].get<double>());
+  EXPECT_NEAR(parts["l2"]["events"].get<double>(), 8 * lines + asked, 0.5);
+  const double at_l2 = bytes_of(r, "prefetch hints") + bytes_of(r, "prefetch requests") +
+                       bytes_of(r, "shape requests") + bytes_of(r, "shape data");
+  const double others = parts["messages"]["events"].get<double>() - at_l2;
+  EXPECT_NEAR(parts["message_wires"]["events"].get<double>(), at_l2 * std::sqrt(4) + others * std::sqrt(8), 1);
+}
+
 // Each bank of a ray store has a port to the box units and one to the units for primitives.
 TEST_F(EnergyRun, ASecondPortTakesItsPlace) {
   const auto stores = [&](const std::string& banks) {

@@ -69,6 +69,17 @@ TEST(WhatIf, EveryLiftIsNoticed) {
       {"l1_size", [](Config& c) { c.memory.l1_kib = 2, c.memory.shape_buffer_kib = 1; }},
       {"l1_port", [](Config& c) { c.memory.l1_kib = 64, c.memory.line_bytes = 16, c.memory.shape_buffer_kib = 1; }},
       {"l1_mshrs", [](Config& c) { c.memory.l1_kib = 2, c.memory.l1_mshrs = 1; }},
+      {"prefetch",
+       [](Config& c) {
+         c.parts.of<StridePrefetcherPart>().lines = 1, c.memory.l2_kib = 16, c.memory.shape_buffer_kib = 1;
+       },
+       0.05},
+      {"prefetch_streams",
+       [](Config& c) {
+         c.parts.of<StridePrefetcherPart>() = {.lines = 4, .streams = 1, .reach = 4096};
+         c.memory.l2_kib = 16, c.memory.shape_buffer_kib = 1;
+       },
+       0.05},
       {"l2_mshrs", [](Config& c) { c.memory.l2_mshrs = 1, c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
       {"l2_port",
        [](Config& c) { c.memory.shape_buffer_kib = 1, c.memory.line_bytes = 16, c.memory.l2_lines_per_cycle = 1; }},

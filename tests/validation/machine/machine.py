@@ -3,6 +3,7 @@ from .clock import Clock, Trace
 from .dram import BankedMemory
 from .memory import Memory, ShapePort, caches_of
 from .network import Topology, connect
+from .prefetcher import prefetchers_of
 from .ray_data import RayData
 from .shading import Shading
 from .tile import Control, Tile
@@ -34,7 +35,8 @@ class Machine:
         self.ray_data = RayData(config, facts, self.clock)
         l2, caches = caches_of(config, self.clock, shapes, self.ray_data.ports)
         self.shading = Shading(self, controls)
-        self.parts = [*self.tiles, *ends[resources:], *caches, memory(config, l2), self.shading]
+        prefetchers = prefetchers_of(config, self.clock, shapes, l2)
+        self.parts = [*self.tiles, *ends[resources:], *caches, *prefetchers, memory(config, l2), self.shading]
 
     def run(self):
         """The cycle at which each ray has been shaded, by its name."""

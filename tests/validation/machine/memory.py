@@ -62,15 +62,18 @@ class ShapePort:
         m = config["memory"]
         self.wire = SideWire(clock, config, way_there(m["l1_latency_cycles" if m.get("l1_kib") else "l2_latency_cycles"]))
         self.requests, self.answers, self.pushed = self.wire.channel, Channel(clock), Channel(clock)
-        self.line = piece_of(config)
+        self.line, self.hints = piece_of(config), []  # side wires to prefetchers
 
-    def request(self, span, tag, now, others=()):
+    def request(self, span, tag, now, others=(), hint=False):
         """Reads the lines of `span`; `tag` comes back, and `others` (clients of the cache) get the span too. Without a
-        tag it writes them."""
+        tag it writes them. A `hint` of it goes to the prefetcher."""
         (address, size), by_flag = span[:2], len(span) > 2
         first, last = address // self.line, (address + size - 1) // self.line
         length = (REQUEST - 2 if by_flag else REQUEST) + (size if tag is None else 0)
         self.wire.send(length + (8 if others else 0), now, (first, last - first + 1, tag, span, others))
+        if hint and tag is not None:
+            for wire in self.hints:
+                wire.send(8, now, first)
 
 
 class Request:
@@ -119,6 +122,7 @@ class Cache:
         self.walks, self.turn = [], 0  # events: (cycle, turn, walk, a piece of it that is there)
         self.complete = []  # requests that wait for their answer to leave
         self.leaving = []   # requests to memory, each with the cycle in which it leaves
+        self.prefetcher = None
 
     def step(self, now):
         while self.from_memory.ready(now):
@@ -133,6 +137,8 @@ class Cache:
         for port in self.ports:
             while port.requests.ready(now):
                 self.take(port.answers, port.requests.take(), now)
+        while self.prefetcher and self.prefetcher.requests.ready(now):
+            self.fetch_ahead(self.prefetcher.requests.take(), now)
         while self.walks and self.walks[0][0] <= now:
             _, _, walk, piece = heapq.heappop(self.walks)
             walk.here.add(piece - walk.first)
@@ -222,6 +228,17 @@ class Cache:
                 how.ready = max(how.ready, end)
             self.waiting[piece].append(how if isinstance(how, Request) or how == "past" else None)
         return True
+
+    def fetch_ahead(self, piece, now):
+        bank = self.bank(piece)
+        if bank.stopped:
+            return
+        bank.looked_up = max(bank.looked_up, now * self.lines_a_cycle) + 1
+        if self.ways(piece).touch(piece) or piece in self.waiting or bank.fetched == self.mshrs:
+            return
+        self.waiting[piece] = ["past"]
+        bank.fetched += 1
+        self.leave(ceil_div(bank.looked_up, self.lines_a_cycle), (piece, False))
 
     def insert(self, piece, now):
         for written in self.ways(piece).insert(piece):

@@ -77,7 +77,7 @@ class ShapeBuffer:
                 entry = self.entries[span] = Entry(span)
                 self.free -= entry.places
                 self.hold(entry)
-                self.port.request(span, entry, now, user.others)
+                self.port.request(span, entry, now, user.others, hint=True)
             if not entry.here:
                 entry.waits.append(user)
                 user.missing += 1

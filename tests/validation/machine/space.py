@@ -135,4 +135,6 @@ def draw(seed, index):
     if r.random() < 0.25:
         scene["sky"] = {"file": str(SKY_MAP), "rotation": pick([0, 75])}
         memory["sky_map"] = pick(["free", "memory", "memory"])
+    if r.random() < 0.3:
+        config["prefetcher"] = {"lines": pick([1, 2, 4]), "streams": pick([1, 2, 8]), "reach": pick([1, 8, 64, 4096])}
     return config

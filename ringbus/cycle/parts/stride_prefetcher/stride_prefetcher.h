@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "ringbus/cycle/messages/side_wire.h"
+#include "ringbus/cycle/parts/attached_part.h"
+#include "ringbus/cycle/parts/stride_prefetcher/part.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A prefetcher along streams of equal strides (T.-F. Chen and J.-L. Baer, Effective hardware-based data prefetching
+/// for high-performance processors, IEEE Transactions on Computers 44 (1995), section 3). A tester has no program
+/// counter by which their table is looked up, so that a line belongs to the first stream whose last line is near it. A
+/// line that follows its stream by the stream's stride makes the prefetcher ask its L2 for the next lines, each once.
+class StridePrefetcher final : public CountingAgent<StridePrefetcherCounts> {
+ public:
+  struct Kinds {
+    MessageKind hints, requests;
+    Kinds(ChannelList& list, const LinkConfig& link);
+  };
+  StridePrefetcher(const StridePrefetcherKeys& keys, const Kinds& kinds, const PartSites& sites, const PartSite& site);
+
+  /// The ends of its channels at others.
+  AttachedPart<StridePrefetcherCounts> ends() const;
+
+  Cycle next() const override;
+  bool polled() const override { return false; }
+  void run(Cycle end) override;
+  std::string describe() const override { return ""; }
+  const StridePrefetcherCounts& counts() const override { return counts_; }
+
+ private:
+  struct Stream {
+    std::int64_t last = 0, stride = 0;  // lines
+    std::int64_t asked = 0;             // lines asked for ahead of the last one, in strides
+    bool begun = false;
+  };
+
+  void take(const ShapeHint& hint, Cycle now);
+  void follow(Stream& stream, std::int64_t line, Cycle now);
+  void ask(std::int64_t line, Cycle now);
+
+  std::int64_t ahead_, reach_;
+  std::vector<std::unique_ptr<Channel<ShapeHint>>> hints_;  // by resource behind the L2
+  std::unique_ptr<Channel<FetchRequest>> requests_;
+  SideWire wire_;
+  std::vector<Stream> streams_;
+  std::size_t oldest_ = 0;  // the stream that is replaced next
+  StridePrefetcherCounts counts_;
+};
+
+}  // namespace carousel::ringbus::cycle
