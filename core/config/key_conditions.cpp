@@ -142,6 +142,7 @@ constexpr Row kRows[] = {
     {"testers.bundle_blocks", kBundles},
     {"memory", kCycle},
     {"memory.shared_by", kManyResources},
+    {"memory.shared_by", kNoDrawnCaches},
     {"memory.l1_ways", kOwnCaches},
     {"memory.l1_lines_per_cycle", kOwnCaches},
     {"memory.l1_mshrs", kOwnCaches},

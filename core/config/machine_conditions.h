@@ -113,6 +113,13 @@ inline constexpr Condition kGroups{
     "the topology is not hierarchical"};
 inline constexpr Condition kGraph{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kGraph; },
                                   "the topology is not drawn"};
+inline constexpr Condition kNoDrawnCaches{[](const C& c, const S&) {
+                                            return c.topology.shape != TopologyShape::kGraph ||
+                                                   std::ranges::none_of(c.topology.nodes, [](const GraphNode& node) {
+                                                     return node.kind == GraphNodeKind::kCache;
+                                                   });
+                                          },
+                                          "caches that are drawn say whom they serve"};
 inline constexpr Condition kCentral{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kCentral; },
                                     "the topology is not central"};
 inline constexpr Condition kDistributor{[](const C& c, const S&) { return has_distributor(c); },

@@ -13,12 +13,16 @@ namespace carousel::ringbus {
 
 using config::Graph;
 
-Graph draw_checked(const TopologyConfig& config) {
+Graph draw_whole(const TopologyConfig& config) {
   std::vector<config::GraphIssue> issues;
   Graph graph = config::draw_graph(config, issues);
   if (issues.empty()) config::check_ways(graph, issues);
   if (!issues.empty()) throw SimulationError(fmt::format("{}: {}", issues.front().key, issues.front().message));
   return graph;
+}
+
+Graph draw_checked(const TopologyConfig& config) {
+  return draw_whole(config).only(Carried::kPackets);
 }
 
 std::string circle_text(const Graph& graph, const std::vector<std::uint32_t>& circle) {
@@ -34,7 +38,7 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   const Routes routes(graph);
   GraphFacts facts;
   facts.resources = graph.resources;
-  facts.routers = graph.nodes.size() - graph.resources;
+  facts.routers = graph.of_kind(GraphNodeKind::kRouter).size();
   facts.links = graph.links.size();
   std::vector<std::uint64_t> pairs(graph.links.size());
   std::uint64_t nodes = 0;

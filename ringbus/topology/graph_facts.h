@@ -11,6 +11,9 @@ namespace carousel::ringbus {
 
 /// The graph of `topology.nodes` and `topology.links`. Throws a SimulationError if it has faults, which checked
 /// configurations have not.
+config::Graph draw_whole(const TopologyConfig& config);
+
+/// Likewise, with the links alone that carry packets.
 config::Graph draw_checked(const TopologyConfig& config);
 
 /// A few links of a circle by name.

@@ -18,14 +18,7 @@ std::uint32_t beside(const Topology& topology, std::uint32_t router) {
 
 }  // namespace
 
-double wire_length(const Topology& topology, const Topology::Wire& wire) {
-  const auto resources = static_cast<std::uint32_t>(topology.resources());
-  if (topology.broadcasts()) return wire.to.value >= resources ? static_cast<double>(resources) : 0.0;
-  const auto place = [&](std::uint32_t node) {
-    if (node < resources) return node;
-    return topology.routed() ? beside(topology, node) : topology.groups()[node - resources].first.value;
-  };
-  const std::uint32_t from = place(wire.from.value), to = place(wire.to.value);
+double place_distance(std::uint32_t resources, std::uint32_t from, std::uint32_t to) {
   const std::uint32_t apart = from > to ? from - to : to - from;
   if (apart <= 1 || apart == resources - 1) return 1;
   const auto width = static_cast<std::uint32_t>(std::ceil(std::sqrt(static_cast<double>(resources))));
@@ -35,6 +28,16 @@ double wire_length(const Topology& topology, const Topology::Wire& wire) {
   };
   return std::abs(column(from) - column(to)) +
          std::abs(static_cast<double>(from / width) - static_cast<double>(to / width));
+}
+
+double wire_length(const Topology& topology, const Topology::Wire& wire) {
+  const auto resources = static_cast<std::uint32_t>(topology.resources());
+  if (topology.broadcasts()) return wire.to.value >= resources ? static_cast<double>(resources) : 0.0;
+  const auto place = [&](std::uint32_t node) {
+    if (node < resources) return node;
+    return topology.routed() ? beside(topology, node) : topology.groups()[node - resources].first.value;
+  };
+  return place_distance(resources, place(wire.from.value), place(wire.to.value));
 }
 
 double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle) {

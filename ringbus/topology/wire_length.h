@@ -13,6 +13,9 @@ namespace carousel::ringbus {
 /// stands for each wire that leads to it; those from it have no length.
 double wire_length(const Topology& topology, const Topology::Wire& wire);
 
+/// Likewise between two places on that grid, each of a resource.
+double place_distance(std::uint32_t resources, std::uint32_t from, std::uint32_t to);
+
 /// The lengths of all wires together, each times its width over `bytes_per_cycle`, which is positive. The medium of a
 /// bus counts once, as a wire of that width.
 double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle);

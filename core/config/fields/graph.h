@@ -23,10 +23,14 @@ inline constexpr auto kEnumNames<GraphNodeKind> = [] {
                                {kPacketProcess, "packet_process"}});
 }();
 
-/// Resources and routers can be simulated; the others keep their places and side wires of today.
-constexpr bool is_built(GraphNodeKind kind) {
-  return kind == GraphNodeKind::kResource || kind == GraphNodeKind::kRouter;
-}
+/// What may travel over a link.
+enum class Carried { kPackets, kShapes, kNewRays, kCompletedRays };
+template <>
+inline constexpr auto kEnumNames<Carried> = [] {
+  using enum Carried;
+  return names<Carried>(
+      {{kPackets, "packets"}, {kShapes, "shapes"}, {kNewRays, "new_rays"}, {kCompletedRays, "completed_rays"}});
+}();
 
 /// The time at which a router sends a packet on.
 enum class Forward { kHead, kWhole };
@@ -47,6 +51,8 @@ struct GraphNode {
   std::int64_t latency_cycles = 0;
   std::optional<std::int64_t> buffers;
   Forward forward = Forward::kHead;
+  std::string serves;  ///< empty: all resources
+  std::optional<std::int64_t> interleave_bytes;
 
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
 };
@@ -68,6 +74,7 @@ struct GraphLink {
   GridSize mesh;
   bool both = false;
   std::optional<std::int64_t> latency_cycles, bytes_per_cycle, depth;
+  std::vector<Carried> carries{Carried::kPackets};
 
   friend bool operator==(const GraphLink&, const GraphLink&) = default;
 };
@@ -77,8 +84,10 @@ namespace config {
 template <class V>
 void describe(V& v, GraphNode& c) {
   v.field("name", c.name, "", "The name of the node, or of the group.");
-  v.choice("kind", c.kind,
-           "A compute resource, or a router, which only passes packets on. The other kinds are not built yet.");
+  v.choice(
+      "kind", c.kind,
+      "A compute resource; a router, which only passes packets on; a cache, an L2 or a bank of one; a memory behind "
+      "the caches; or shading, with ray control. A packet_process is not built yet.");
   v.field_or_auto("count", c.count, IntRange{1, kMaxResources}, "nodes",
                   "The number of nodes of a group, called name[0] and on; auto is one node of that very name.");
   v.field("latency_cycles", c.latency_cycles, IntRange{0, 1'000'000}, "cycles",
@@ -87,6 +96,10 @@ void describe(V& v, GraphNode& c) {
                   "The places of a router for each link that leaves it; auto is room for all packets there are.");
   v.choice("forward", c.forward,
            "A router sends a packet on when its head has come, if the next link is as wide, or the whole packet.");
+  v.field("serves", c.serves, "",
+          "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn.");
+  v.field_or_auto("interleave_bytes", c.interleave_bytes, IntRange{16, 1 << 20}, "bytes",
+                  "The bytes that a cache of a group, or a memory, holds before the next one's turn; auto is a line.");
 }
 
 template <class V>
@@ -109,6 +122,9 @@ void describe(V& v, GraphLink& c) {
   v.field_or_auto("depth", c.depth, IntRange{1, 65536}, "packets",
                   "The number of packets that the link holds; auto is that of topology.link.")
       .relax("packets_in_flight", Better::kTwice);
+  v.choices("carries", c.carries,
+            "What travels over the link: packets; shapes, which are requests to caches and memory with all that they "
+            "read and write; rays from ray control and back to it. What no link carries has wires of its own.");
 }
 
 }  // namespace config

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -91,13 +94,20 @@ struct LinkConfig {
   std::int64_t bytes_per_cycle = 32;
 };
 
-/// The testers of one resource that differs from the rest.
+/// What is different in one resource, or in nodes of a graph.
 struct ResourceOverride {
-  static constexpr std::string_view kRequired = "resource";
+  static constexpr std::string_view kRequired = "";
   static constexpr std::string_view kRowPath = "";  ///< the keys of its testers are those of the whole machine
 
-  std::int64_t resource = 0;
+  std::optional<std::int64_t> resource;
   TestersConfig testers;
+  std::string nodes{};
+  std::optional<std::int64_t> shape_buffer_kib{};
+  std::vector<std::int64_t> named{};  ///< the resources that `nodes` names, once the graph has been read
+
+  bool is_about(std::int64_t number) const {
+    return resource == number || std::find(named.begin(), named.end(), number) != named.end();
+  }
 };
 
 struct TopologyConfig {
@@ -118,7 +128,14 @@ struct TopologyConfig {
 inline const TestersConfig& testers_of(const TestersConfig& machine, const TopologyConfig& topology,
                                        std::int64_t resource) {
   for (const ResourceOverride& one : topology.overrides)
-    if (one.resource == resource) return one.testers;
+    if (one.is_about(resource)) return one.testers;
+  return machine;
+}
+
+/// The shape buffer of a resource: its own, or that of the whole machine (memory.shape_buffer_kib).
+inline std::int64_t shape_buffer_kib_of(std::int64_t machine, const TopologyConfig& topology, std::int64_t resource) {
+  for (const ResourceOverride& one : topology.overrides)
+    if (one.is_about(resource)) return one.shape_buffer_kib.value_or(machine);
   return machine;
 }
 
@@ -138,7 +155,12 @@ void describe(V& v, LinkConfig& c) {
 
 template <class V>
 void describe(V& v, ResourceOverride& c) {
-  v.field("resource", c.resource, IntRange{0, kMaxResources - 1}, "", "The number of the resource.");
+  v.field_or_auto("resource", c.resource, IntRange{0, kMaxResources - 1}, "",
+                  "The number of the resource; auto: nodes says which.");
+  v.field("nodes", c.nodes, "", "Resources of a graph by name, such as r[0..3].");
+  v.field_or_auto("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",
+                  "The shape data that it holds; auto is memory.shape_buffer_kib.")
+      .relax("shape_buffer", Better::kTwice, Relaxed{.keeps_shapes = true});
   v.section("testers", c.testers, "Its testers. A key that is not given is as in `testers` of the whole machine.");
 }
 

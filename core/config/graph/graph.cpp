@@ -7,15 +7,13 @@
 
 #include <fmt/format.h>
 
-#include "core/config/graph/node_names.h"
-
 namespace carousel::config {
 
 namespace {
 
 using Nodes = std::vector<std::uint32_t>;
 
-constexpr std::size_t kMaxDrawn = 1024;  // resources and routers
+constexpr std::size_t kMaxDrawn = 1024;  // nodes of all kinds
 
 /// Writes out nodes and then links.
 class Drawing {
@@ -30,7 +28,8 @@ class Drawing {
     }
     add_nodes(GraphNodeKind::kResource);
     graph_.resources = static_cast<std::uint32_t>(graph_.nodes.size());
-    add_nodes(GraphNodeKind::kRouter);
+    for (const auto& [kind, name] : kEnumNames<GraphNodeKind>)
+      if (kind != GraphNodeKind::kResource && is_built(kind)) add_nodes(kind);
     if (graph_.nodes.size() > kMaxDrawn) {
       issue("topology.nodes", fmt::format("expected at most {} nodes, found {}", kMaxDrawn, graph_.nodes.size()));
       return {};
@@ -55,7 +54,7 @@ class Drawing {
         issue(key, fmt::format("expected a letter or _ and then letters, digits and _, found '{}'", node.name));
         continue;
       }
-      if (!names_.add(node.name, static_cast<std::uint32_t>(graph_.nodes.size()), node.count)) {
+      if (!graph_.names.add(node.name, static_cast<std::uint32_t>(graph_.nodes.size()), node.count)) {
         issue(key, fmt::format("there is a node or group '{}' already", node.name));
         continue;
       }
@@ -66,7 +65,7 @@ class Drawing {
 
   Nodes find(std::string_view key, const std::string& pattern) {
     std::string error;
-    Nodes nodes = names_.find(pattern, error);
+    Nodes nodes = graph_.names.find(pattern, error);
     if (nodes.empty()) link_issue(key, std::move(error));
     return nodes;
   }
@@ -159,13 +158,13 @@ class Drawing {
                                         name(from), name(to), known->second));
     const LinkConfig& all = config_.link;
     graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
-                            link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
-                            entry_});
+                            link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth), entry_,
+                            link.carries});
+    std::ranges::sort(graph_.links.back().carries);
   }
 
   const TopologyConfig& config_;
   std::vector<GraphIssue>& issues_;
-  NodeNames names_;
   Graph graph_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> entries_;  // by the link's nodes
   std::size_t entry_ = 0;
@@ -190,6 +189,23 @@ std::vector<bool> reached(const Graph& graph, const std::vector<Nodes>& next, st
 
 }  // namespace
 
+bool Graph::Link::carries_any(std::initializer_list<Carried> some) const {
+  return std::ranges::any_of(some, [&](Carried one) { return std::ranges::binary_search(carries, one); });
+}
+
+std::vector<std::uint32_t> Graph::of_kind(GraphNodeKind kind) const {
+  std::vector<std::uint32_t> out;
+  for (std::uint32_t i = 0; i < nodes.size(); ++i)
+    if (nodes[i].drawn->kind == kind) out.push_back(i);
+  return out;
+}
+
+Graph Graph::only(Carried what) const {
+  Graph out = *this;
+  std::erase_if(out.links, [&](const Link& link) { return !link.carries_any({what}); });
+  return out;
+}
+
 std::int64_t drawn_resources(const TopologyConfig& config) {
   std::int64_t sum = 0;
   for (const GraphNode& node : config.nodes)
@@ -197,18 +213,36 @@ std::int64_t drawn_resources(const TopologyConfig& config) {
   return sum;
 }
 
+void name_overrides(TopologyConfig& config) {
+  const bool any = std::ranges::any_of(config.overrides, [](const auto& one) { return !one.nodes.empty(); });
+  if (!any) return;
+  std::vector<GraphIssue> ignored;
+  std::string error;
+  const Graph graph = draw_graph(config, ignored);
+  for (ResourceOverride& one : config.overrides) {
+    one.named.clear();
+    if (one.nodes.empty()) continue;
+    for (const std::uint32_t node : graph.names.find(one.nodes, error))
+      if (node < graph.resources) one.named.push_back(node);
+  }
+}
+
 Graph draw_graph(const TopologyConfig& config, std::vector<GraphIssue>& issues) {
   return Drawing(config, issues).draw();
 }
 
-void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
-  if (graph.resources < 2) return;
+std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std::uint32_t>& starts) {
   std::vector<Nodes> next(graph.nodes.size());
+  for (const Graph::Link& link : graph.links) next[link.from].push_back(link.to);
+  std::vector<std::vector<bool>> out;
+  for (const std::uint32_t start : starts) out.push_back(reached(graph, next, start));
+  return out;
+}
+
+void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
+  if (graph.nodes.size() < 2) return;
   std::vector<bool> linked(graph.nodes.size());
-  for (const Graph::Link& link : graph.links) {
-    next[link.from].push_back(link.to);
-    linked[link.from] = linked[link.to] = true;
-  }
+  for (const Graph::Link& link : graph.links) linked[link.from] = linked[link.to] = true;
   bool all = true;
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
     if (linked[i]) continue;
@@ -217,15 +251,15 @@ void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
                       fmt::format("{} has no link; expected one to it and one from it", graph.nodes[i].name)});
   }
   if (!all) return;  // the ways that are missing are those
-  for (std::uint32_t from = 0; from < graph.resources; ++from) {
-    const std::vector<bool> known = reached(graph, next, from);
+  const Nodes resources = graph.of_kind(GraphNodeKind::kResource);
+  const std::vector<std::vector<bool>> ways = ways_of(graph.only(Carried::kPackets), resources);
+  for (std::uint32_t from = 0; from < graph.resources; ++from)
     for (std::uint32_t to = 0; to < graph.resources; ++to) {
-      if (known[to]) continue;
+      if (ways[from][to]) continue;
       issues.push_back({"topology.links", fmt::format("there is no way from {} to {}; expected links that lead there",
                                                       graph.nodes[from].name, graph.nodes[to].name)});
       return;  // one names the gap; there may be thousands
     }
-  }
 }
 
 }  // namespace carousel::config

@@ -2,15 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
 #include "core/config/fields/topology.h"
+#include "core/config/graph/node_names.h"
 
 namespace carousel::config {
 
 /// A network as `topology.nodes` and `topology.links` draw it: groups and patterns are written out, and what a link
-/// does not say is filled in. Resources come first, in their order, and then the routers.
+/// does not say is filled in. Resources come first, in their order, and then the others, kind by kind.
 struct Graph {
   struct Node {
     std::string name;
@@ -21,13 +23,21 @@ struct Graph {
   struct Link {
     std::uint32_t from, to;
     std::int64_t latency_cycles, bytes_per_cycle, depth;
-    std::size_t entry;  ///< its place in topology.links
+    std::size_t entry;                  ///< its place in topology.links
+    std::vector<Carried> carries = {};  ///< sorted
+
+    bool carries_any(std::initializer_list<Carried> some) const;
   };
 
   std::vector<Node> nodes;
   std::vector<Link> links;
   std::uint32_t resources = 0;
+  NodeNames names;
 
+  /// The numbers of its nodes of a kind, in order.
+  std::vector<std::uint32_t> of_kind(GraphNodeKind kind) const;
+  /// The same nodes with the links alone that carry `what`.
+  Graph only(Carried what) const;
   /// "r[0] > r[1]"
   std::string name_of(const Link& link) const { return nodes[link.from].name + " > " + nodes[link.to].name; }
 };
@@ -40,11 +50,22 @@ struct GraphIssue {
 /// The number of resources that the nodes make.
 std::int64_t drawn_resources(const TopologyConfig& config);
 
+/// Tells whether nodes of the kind can be simulated.
+constexpr bool is_built(GraphNodeKind kind) {
+  return kind != GraphNodeKind::kPacketProcess;
+}
+
+/// Fills in which resources overrides name. A name that is no node is left out; check_graph() says so.
+void name_overrides(TopologyConfig& config);
+
 /// Writes out the graph; what is wrong with it is appended to `issues`, and left out. Nodes of kinds that are not built
 /// are left out, too.
 Graph draw_graph(const TopologyConfig& config, std::vector<GraphIssue>& issues);
 
-/// The faults of the whole: resources without a link, nodes that no way leads to.
+/// By start: the nodes to which ways lead from it, itself included.
+std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std::uint32_t>& starts);
+
+/// The faults of the whole: nodes without a link, resources between which no way leads packets.
 void check_ways(const Graph& graph, std::vector<GraphIssue>& issues);
 
 }  // namespace carousel::config

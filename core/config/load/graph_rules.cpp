@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/drawn_parts.h"
 #include "core/config/graph/graph.h"
 #include "core/config/load/network_rules.h"
 
@@ -16,18 +17,69 @@ namespace {
 /// The keys of a node that its kind has. Returns whether the node can be simulated.
 bool check_node(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
   if (!is_built(node.kind)) {
-    breach(key + ".kind", fmt::format("a node that is a {0} is not built yet: caches, memory and shading have wires of "
-                                      "their own, which memory.* and shading.* describe; expected resource or router, "
-                                      "found {0}",
+    breach(key + ".kind", fmt::format("a node that is a {0} is not built yet; expected another kind, found {0}",
                                       enum_name(node.kind)));
     return false;
   }
-  if (node.kind == GraphNodeKind::kRouter) return true;
-  constexpr std::string_view otherwise = "only a router has this key; a resource has places for its packets in test";
-  if (node.buffers) breach(key + ".buffers", fmt::format("{}; expected auto, found {}", otherwise, *node.buffers));
-  if (node.forward != Forward::kHead)
-    breach(key + ".forward", fmt::format("{}; expected head, found {}", otherwise, enum_name(node.forward)));
+  if (node.kind == GraphNodeKind::kResource) {
+    constexpr std::string_view otherwise = "a resource has places for its packets in test, and other nodes this key";
+    if (node.buffers) breach(key + ".buffers", fmt::format("{}; expected auto, found {}", otherwise, *node.buffers));
+    if (node.forward != Forward::kHead)
+      breach(key + ".forward", fmt::format("{}; expected head, found {}", otherwise, enum_name(node.forward)));
+  }
+  if (!node.serves.empty() && node.kind != GraphNodeKind::kCache)
+    breach(key + ".serves",
+           fmt::format("resources ask caches; expected none at a {}, found '{}'", enum_name(node.kind), node.serves));
+  if (node.interleave_bytes && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kMemory)
+    breach(key + ".interleave_bytes", fmt::format("caches and memories hold lines; expected auto at a {}, found {}",
+                                                  enum_name(node.kind), *node.interleave_bytes));
   return true;
+}
+
+/// What the wires of drawn parts cannot carry yet.
+void check_parts(const Config& config, const Graph& graph, const DrawnParts& parts, const RuleBreach& breach) {
+  const bool traffic = config.workload.kind == WorkloadConfig::Kind::kTraffic;
+  bool shared = false;
+  std::vector<char> named(config.topology.links.size());
+  for (const Graph::Link& link : graph.links) {
+    if (std::exchange(named[link.entry], 1) != 0) continue;
+    const std::string key = fmt::format("topology.links.{}", link.entry);
+    const bool packets = link.carries_any({Carried::kPackets}),
+               others = link.carries_any({Carried::kShapes, Carried::kNewRays, Carried::kCompletedRays});
+    if (!packets && !others) breach(key + ".carries", "a link carries something; expected [packets] for example");
+    if (!packets && config.topology.links[link.entry].depth)
+      breach(key + ".depth", fmt::format("a link without packets has room for all there is to carry, so nothing waits "
+                                         "in a circle; expected no depth, found {}",
+                                         link.depth));
+    shared |= packets && others;
+    if (packets && others && link.latency_cycles < 2)
+      breach(key + ".latency_cycles",
+             fmt::format("packets and others that share {} take turns at its near end, a cycle away; expected at least "
+                         "2, found {}",
+                         graph.name_of(link), link.latency_cycles));
+  }
+  if (shared && config.faults.links.any() && !traffic)
+    breach("faults.links", "links that packets share with others have no faults yet; expected none");
+  if (parts.caches.empty()) return;
+  const auto refuse = [&](const char* key, bool found, std::string_view expected) {
+    if (found) breach(key, fmt::format("caches that are drawn do not have this yet; expected {}", expected));
+  };
+  const MemoryConfig& memory = config.memory;
+  using Free = MemoryConfig::ShadingData;
+  refuse("memory.fetch", memory.fetch == MemoryConfig::Fetch::kMulticast, "resource, found multicast");
+  refuse("memory.l2_ray_ways", memory.l2_ray_ways > 0, "0");
+  refuse("memory.ray_records", memory.ray_records != MemoryConfig::RayRecords::kResource, "resource, found master");
+  refuse("memory.path_state", memory.path_state != Free::kFree, "free, found memory");
+  refuse("memory.film", memory.film != Free::kFree, "free, found memory");
+  refuse("memory.sky_map", memory.sky_map != Free::kFree && config.scene.sky && !config.scene.sky->file.empty(),
+         "free, found memory");
+  const bool banks = std::ranges::any_of(parts.caches, [](const Banks& group) { return group.nodes.size() > 1; });
+  if (banks && parts.memories.nodes.empty())
+    breach("topology.nodes",
+           "caches that hold lines in turn name them as they do; expected a node of the kind memory "
+           "behind them, or one node a group of caches");
+  refuse("memory.strip_end", banks && memory.strip_end == MemoryConfig::StripEnd::kFlag,
+         "length, or one node a group of caches, as the walk along a strip does not go from node to node; found flag");
 }
 
 }  // namespace
@@ -49,9 +101,24 @@ void check_graph(const Config& config, const RuleBreach& breach) {
            "area.budget_mm2; found resources");
   std::vector<GraphIssue> issues;
   const Graph graph = draw_graph(c, issues);
+  DrawnParts drawn;
   if (issues.empty() && built) check_ways(graph, issues);
-  const auto narrow = std::ranges::find_if(
-      graph.links, [&](const Graph::Link& link) { return link.bytes_per_cycle != c.link.bytes_per_cycle; });
+  if (issues.empty() && built) drawn = find_parts(c, graph, config.memory.line_bytes, issues);
+  if (issues.empty() && built) check_parts(config, graph, drawn, breach);
+  for (std::size_t i = 0; i < c.overrides.size(); ++i) {
+    const ResourceOverride& one = c.overrides[i];
+    if (one.nodes.empty()) continue;
+    std::string error;
+    const std::vector<std::uint32_t> found = graph.names.find(one.nodes, error);
+    if (found.empty())
+      issues.push_back({fmt::format("topology.overrides.{}.nodes", i), std::move(error)});
+    else if (found.size() != one.named.size())
+      issues.push_back({fmt::format("topology.overrides.{}.nodes", i),
+                        fmt::format("only resources have testers; expected such nodes, found '{}'", one.nodes)});
+  }
+  const auto narrow = std::ranges::find_if(graph.links, [&](const Graph::Link& link) {
+    return link.carries_any({Carried::kPackets}) && link.bytes_per_cycle != c.link.bytes_per_cycle;
+  });
   const bool parts =
       config.packets.results == PacketResults::kPerShape || config.packets.results == PacketResults::kMessage;
   if (parts && narrow != graph.links.end() && config.workload.kind != WorkloadConfig::Kind::kTraffic)
@@ -59,7 +126,8 @@ void check_graph(const Config& config, const RuleBreach& breach) {
            fmt::format("each result begins a cycle of its own, which is counted for links as wide as topology.link; "
                        "{} is {} bytes wide; expected mask or implied_order, found {}",
                        graph.name_of(*narrow), narrow->bytes_per_cycle, enum_name(config.packets.results)));
-  const auto shallow = std::ranges::find_if(graph.links, [](const Graph::Link& link) { return link.depth < 2; });
+  const auto shallow = std::ranges::find_if(
+      graph.links, [](const Graph::Link& link) { return link.carries_any({Carried::kPackets}) && link.depth < 2; });
   if (c.flow == Flow::kBubble && shallow != graph.links.end() && c.link.depth >= 2)
     breach(fmt::format("topology.links.{}.depth", shallow->entry),
            fmt::format("flow: bubble keeps one place of a link free; expected at least 2 for {}, found {}",

@@ -41,13 +41,15 @@ TestersConfig read_base_testers(const config::Node& root) {
 }
 
 /// A shape may imply a value where the file says nothing: point_to_point has no other visits than those of owners, a
-/// graph would hardly have, and its nodes are its resources.
+/// graph would hardly have, and its nodes are its resources, by whose names overrides may go.
 void imply(const config::Node& root, Config& config) {
   const config::Node* topology = root.find("topology");
   const bool graph = config.topology.shape == TopologyShape::kGraph;
   if ((graph || config.topology.shape == TopologyShape::kPointToPoint) && topology->find("visit") == nullptr)
     config.topology.visit = Visit::kOwners;
-  if (!graph || topology->find("resources") != nullptr) return;
+  if (!graph) return;
+  config::name_overrides(config.topology);
+  if (topology->find("resources") != nullptr) return;
   const std::int64_t drawn = config::drawn_resources(config.topology);
   config.topology.resources = std::clamp<std::int64_t>(drawn, 1, config::kMaxResources);
 }

@@ -159,13 +159,22 @@ class NetworkRules {
 
   void overrides_name_resources() {
     std::map<std::int64_t, std::size_t> seen;
+    const bool graph = c.topology.shape == TopologyShape::kGraph;
     for (std::size_t i = 0; i < c.topology.overrides.size(); ++i) {
       const ResourceOverride& one = c.topology.overrides[i];
-      const std::string key = fmt::format("topology.overrides.{}.resource", i);
+      const std::string entry = fmt::format("topology.overrides.{}", i), key = entry + ".resource";
+      if (one.resource.has_value() != one.nodes.empty())
+        breach_(entry, "expected the key 'resource', or 'nodes' for those of a graph");
+      if (!one.nodes.empty() && !graph) breach_(entry + ".nodes", "only a graph has names; expected resource");
       if (one.resource >= c.topology.resources)
-        breach_(key, fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, one.resource));
-      else if (!seen.emplace(one.resource, i).second)
-        breach_(key, fmt::format("resource {} has an override already", one.resource));
+        breach_(key,
+                fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, *one.resource));
+      else if (one.resource && !seen.emplace(*one.resource, i).second)
+        breach_(key, fmt::format("resource {} has an override already", *one.resource));
+      const auto twice = std::find_if(one.named.begin(), one.named.end(),
+                                      [&](std::int64_t resource) { return !seen.emplace(resource, i).second; });
+      if (twice != one.named.end())
+        breach_(entry + ".nodes", fmt::format("resource {} has an override already", *twice));
       if (one.testers.any_hit != c.testers.any_hit)
         breach_(fmt::format("topology.overrides.{}.testers.any_hit", i),
                 fmt::format("all resources have the same any-hit calls; expected {}, found {}",

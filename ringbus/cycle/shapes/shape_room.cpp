@@ -38,15 +38,21 @@ std::vector<ConfigIssue> check_shape_buffer(const Config& config, const accel::A
   if (config.engine.kind != EngineKind::kCycle) return {};
   const std::int64_t least =
       least_shape_buffer_kib(accel, config.accuracy, config.bvh, config.memory, config.collections);
-  if (config.memory.shape_buffer_kib >= least) return {};
-  ConfigIssue issue;
-  issue.key_path = "memory.shape_buffer_kib";
-  issue.message = fmt::format(
-      "a test needs a whole {} and its transform at once, and this scene's largest do not fit; expected at least "
-      "{}, found {}",
-      config.collections.key == CollectionKey::kBlock ? "block of memory" : "strip", least,
-      config.memory.shape_buffer_kib);
-  return {issue};
+  std::vector<ConfigIssue> issues;
+  const auto check = [&](std::string key, std::int64_t kib) {
+    if (kib >= least) return;
+    ConfigIssue& issue = issues.emplace_back();
+    issue.key_path = std::move(key);
+    issue.message = fmt::format(
+        "a test needs a whole {} and its transform at once, and this scene's largest do not fit; expected at least "
+        "{}, found {}",
+        config.collections.key == CollectionKey::kBlock ? "block of memory" : "strip", least, kib);
+  };
+  check("memory.shape_buffer_kib", config.memory.shape_buffer_kib);
+  for (std::size_t i = 0; i < config.topology.overrides.size(); ++i)
+    if (const auto own = config.topology.overrides[i].shape_buffer_kib)
+      check(fmt::format("topology.overrides.{}.shape_buffer_kib", i), *own);
+  return issues;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -78,6 +78,25 @@ inline std::vector<KeyRow> key_rows() {
        {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"},
        {"[{ring: 'r[*]', latency_cycles: 9}]", "[{ring: 'r[*]', bytes_per_cycle: 8}]", "[{ring: 'r[*]', depth: 1}]",
         "[{ring: 'r[*]', both: true}]", "[{mesh: [2, 2]}]"}},
+      {"topology.nodes",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..2]'}, "
+        "{name: b, kind: cache, serves: 'r[3]'}, {name: d, kind: memory}], links: [{ring: 'r[*]'}, "
+        "{from: 'r[*]', all_to: 'a[*], b', both: true, carries: [shapes]}, "
+        "{from: 'a[*], b', to: d, both: true, carries: [shapes]}]}"},
+       {"[{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..2]', interleave_bytes: 1024}, "
+        "{name: b, kind: cache, serves: 'r[3]'}, {name: d, kind: memory}]",
+        "[{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..1]'}, "
+        "{name: b, kind: cache, serves: 'r[2..3]'}, {name: d, kind: memory}]"}},
+      {"topology.links",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: l2, kind: cache}, {name: s, kind: shading}], "
+        "links: [{ring: 'r[*]'}, {from: 'r[*]', to: l2, both: true, carries: [shapes]}, "
+        "{from: 'r[*]', to: s, both: true, carries: [new_rays]}]}"},
+       {"[{ring: 'r[*]'}, {from: 'r[*]', to: l2, both: true, carries: [shapes]}, "
+        "{from: 'r[*]', to: s, both: true, carries: [new_rays, completed_rays]}]",
+        "[{ring: 'r[*]', carries: [packets, shapes]}, {line: 'r[0], l2', both: true, carries: [shapes]}, "
+        "{from: 'r[*]', to: s, both: true, carries: [new_rays]}]"}},
       {"topology.rings", kTerrain, {"topology.shape=multi_ring"}, {"3"}},
       {"topology.groups", kTerrain, {"topology.shape=hierarchical"}, {"2"}},
       {"topology.form", kTerrain, {"topology.shape=central", "topology.resources=1", "testers.contexts=4"}},
@@ -88,6 +107,11 @@ inline std::vector<KeyRow> key_rows() {
       {"topology.link.latency_cycles", kTerrain, {}, {"9"}},
       {"topology.link.bytes_per_cycle", kTerrain, {}, {"8"}},
       {"topology.overrides", kTerrain, {}, {"[{resource: 1, testers: {box: {units: 1, interval_cycles: 9}}}]"}},
+      {"topology.overrides",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"},
+       {"[{nodes: 'r[1..2]', testers: {box: {units: 1, interval_cycles: 9}}}]",
+        "[{nodes: 'r[1..2]', shape_buffer_kib: 4}]"}},
       {"rays.slots_per_resource", kTerrain, {}, {"8"}},
       {"rays.placement", kNative},
       {"rays.placement", kTerrain},

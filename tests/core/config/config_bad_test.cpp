@@ -77,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"BareUnits", SCENE "testers: {triangle: 0}\n",
                   "test.yaml:2:21: testers.triangle: expected a map or an integer from 1 to 1024 (units), found 0"},
         BadConfig{"OverrideWithoutResource", SCENE "topology: {overrides: [{testers: {box: 2}}]}\n",
-                  "test.yaml:2:24: topology.overrides.0: expected the key 'resource'"},
+                  "test.yaml:2:24: topology.overrides.0: expected the key 'resource', or 'nodes' for those of a graph"},
         BadConfig{"OverridesIsMap", SCENE "topology: {overrides: {resource: 1}}\n",
                   "test.yaml:2:23: topology.overrides: expected a list, found a map"},
         BadConfig{"EmptyFileName", "scene: {file: ''}\n",

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/config/graph/drawn_parts.h"
 #include "core/config/graph/graph.h"
 #include "core/config/write.h"
 #include "tests/core/config/bad_config.h"
@@ -138,8 +139,9 @@ INSTANTIATE_TEST_SUITE_P(
                   "  links: [{ring: 'r[*]', depth: 4}, {from: 'r[0]', to: 'r[2]', depth: 1}]}\n",
                   "topology.links.1.depth: flow: bubble keeps one place of a link free; expected at least 2 for r[0] > "
                   "r[2], found 1"},
-        BadConfig{"NotBuilt", "topology: {shape: graph, nodes: [{name: a}, {name: l2, kind: cache}], links: []}\n",
-                  "topology.nodes.1.kind: a node that is a cache is not built yet"},
+        BadConfig{"NotBuilt",
+                  "topology: {shape: graph, nodes: [{name: a}, {name: c, kind: packet_process}], links: []}\n",
+                  "topology.nodes.1.kind: a node that is a packet_process is not built yet"},
         BadConfig{"UnknownKind", "topology: {shape: graph, nodes: [{name: a, kind: ruoter}], links: []}\n",
                   "did you mean 'router'?"},
         BadConfig{"OtherNumber",
@@ -158,8 +160,108 @@ INSTANTIATE_TEST_SUITE_P(
             "r[0..1] has 2 nodes and r[2..4] has 3"},
         BadConfig{"BuffersOfAResource",
                   "topology: {shape: graph, nodes: [{name: r, count: 2, buffers: 2}], links: [{ring: 'r[*]'}]}\n",
-                  "topology.nodes.0.buffers: only a router has this key"}),
+                  "topology.nodes.0.buffers: a resource has places for its packets in test, and other nodes this key"}),
     [](const auto& one) { return one.param.name; });
+
+/// Two resources on a link, and beside them a cache and a memory, with these links.
+std::string with_cache(const std::string& links, const std::string& cache = "") {
+  return "topology:\n  shape: graph\n  nodes:\n    - {name: r, count: 2}\n    - {name: l2, kind: cache" + cache +
+         "}\n    - {name: dram, kind: memory}\n  links:\n    - {ring: 'r[*]'}\n" + links;
+}
+const std::string kToCache = "    - {from: 'r[*]', to: l2, both: true, carries: [shapes]}\n";
+const std::string kToMemory = "    - {from: l2, to: dram, both: true, carries: [shapes]}\n";
+
+TEST(GraphConfig, PartsAreFoundBehindTheResources) {
+  const Config config = read(with_cache(kToCache + kToMemory, ", serves: 'r[*]', interleave_bytes: 128"));
+  std::vector<config::GraphIssue> issues;
+  const config::Graph graph = config::draw_graph(config.topology, issues);
+  const config::DrawnParts parts = config::find_parts(config.topology, graph, config.memory.line_bytes, issues);
+  EXPECT_TRUE(issues.empty()) << issues.front().message;
+  ASSERT_EQ(parts.caches.size(), 1u);
+  EXPECT_THAT(parts.caches[0].nodes, ElementsAre(2u));
+  EXPECT_EQ(parts.caches[0].interleave_bytes, 128);
+  EXPECT_THAT(parts.caches_of, ElementsAre(0u, 0u));
+  EXPECT_THAT(parts.memories.nodes, ElementsAre(3u));
+  EXPECT_EQ(parts.memories.interleave_bytes, 64);
+  EXPECT_FALSE(parts.shading);
+  const std::string text = resolved_yaml(config);
+  EXPECT_EQ(parse_config(text, "again.yaml").topology.links, config.topology.links) << text;
+}
+
+TEST(GraphConfig, AnOverrideNamesNodes) {
+  const Config config = read(
+      "topology:\n  shape: graph\n  nodes: [{name: a, count: 2}, {name: b, count: 2}]\n  links: [{ring: 'a[*], "
+      "b[*]'}]\n"
+      "  overrides: [{nodes: 'b[*]', testers: {box: {units: 3}}}, {resource: 0, testers: {box: {units: 5}}}]\n");
+  for (const auto& [resource, units] : {std::pair{0, 5}, {1, 1}, {2, 3}, {3, 3}})
+    EXPECT_EQ(testers_of(config.testers, config.topology, resource).units[UnitKind::kBox].units, units) << resource;
+  const std::string text = resolved_yaml(config);
+  const Config again = parse_config(text, "again.yaml");
+  EXPECT_EQ(again.topology.overrides[0].named, config.topology.overrides[0].named) << text;
+}
+
+struct BadPart {
+  std::string text, message;
+};
+
+TEST(GraphConfig, PartsThatCannotWorkAreRefusedByName) {
+  for (const BadPart& bad : {
+
+           BadPart{with_cache("    - {from: 'r[0]', to: l2, both: true, carries: [shapes]}\n" + kToMemory),
+                   "test.yaml:8:5: topology.links: there is no way from r[1] to l2 over links that carry shapes"},
+           BadPart{with_cache("    - {from: 'r[*]', to: l2, carries: [shapes]}\n" + kToMemory),
+                   "topology.links: there is no way from l2 to r[0] over links that carry shapes"},
+           BadPart{with_cache(kToCache + "    - {from: l2, to: dram, both: true}\n"),
+                   "topology.links: there is no way from l2 to dram over links that carry shapes; expected links with "
+                   "carries: [shapes] that lead there"},
+           BadPart{with_cache(kToCache + kToMemory, ", serves: 'r[0]'"),
+                   "topology.nodes: r[1] has no memory: no cache serves it"},
+           BadPart{with_cache(kToCache + kToMemory, ", serves: 'q[0]'"),
+                   "test.yaml:7:43: topology.nodes.1.serves: expected a node, found 'q'"},
+           BadPart{with_cache(kToCache + kToMemory, ", serves: l2"),
+                   "topology.nodes.1.serves: expected resources, found l2"},
+           BadPart{with_cache(kToCache + kToMemory, ", interleave_bytes: 96"),
+                   "topology.nodes.1.interleave_bytes: a node holds whole lines; expected a multiple of "
+                   "memory.line_bytes = 64, found 96"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r}, {name: a, kind: cache}, {name: b, kind: cache}],\n"
+                   "  links: [{from: r, all_to: 'a, b', both: true, carries: [shapes]}]}\n",
+                   "topology.nodes.2.name: r asks a already; expected one group of caches for each resource"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r}, {name: dram, kind: memory}],\n"
+                   "  links: [{from: r, to: dram, both: true}]}\n",
+                   "topology.nodes.1.kind: a memory answers caches"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]'}],\n"
+                   "  overrides: [{nodes: 'q[0]', testers: {box: 2}}]}\n",
+                   "test.yaml:4:23: topology.overrides.0.nodes: expected a node, found 'q'"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}, {name: x, kind: router}],\n"
+                   "  links: [{ring: 'r[*], x'}], overrides: [{nodes: x, testers: {box: 2}}]}\n",
+                   "topology.overrides.0.nodes: only resources have testers; expected such nodes, found 'x'"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]'}],\n"
+                   "  overrides: [{nodes: 'r[*]', testers: {box: 2}}, {resource: 1}]}\n",
+                   "topology.overrides.1.resource: resource 1 has an override already"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}],\n"
+                   "  links: [{ring: 'r[*]', carries: [packets, shapes]}]}\n",
+                   "topology.links.0.carries: nothing of the kind shapes travels; expected a node of the kind cache"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}],\n"
+                   "  links: [{ring: 'r[*]'}, {line: 'r[0], r[1]', carries: []}]}\n",
+                   "topology.links.1: a second link from r[0] to r[1]"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 3}],\n"
+                   "  links: [{ring: 'r[*]'}, {from: 'r[0]', to: 'r[2]', carries: []}]}\n",
+                   "topology.links.1.carries: a link carries something; expected [packets] for example"},
+           BadPart{with_cache("    - {from: 'r[*]', to: l2, both: true, carries: [shapes], depth: 4}\n" + kToMemory),
+                   "topology.links.1.depth: a link without packets has room for all there is to carry"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}, {name: l2, kind: cache}],\n"
+                   "  links: [{line: 'r[*], l2', both: true, latency_cycles: 1, carries: [packets, shapes]}]}\n",
+                   "topology.links.0.latency_cycles: packets and others that share r[0] > r[1] take turns"},
+           BadPart{with_cache(kToCache + kToMemory) + "memory: {fetch: multicast}\n",
+                   "memory.fetch: caches that are drawn do not have this yet; expected resource, found multicast"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r}, {name: s, kind: shading, count: 2}],\n"
+                   "  links: [{from: r, to: 's[*]', both: true, carries: [new_rays, completed_rays]}]}\n",
+                   "topology.nodes.1.kind: all workers are one pool, which is s[0]"},
+           BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}, {name: s, kind: shading}],\n"
+                   "  links: [{ring: 'r[*]'}, {from: s, to: 'r[0]', both: true, carries: [new_rays]}]}\n",
+                   "topology.links: there is no way from s to r[1] over links that carry new_rays"}})
+    EXPECT_THAT(texts(issues_of(kHead + bad.text)), ElementsAre(HasSubstr(bad.message))) << bad.text;
+}
 
 TEST(GraphConfig, TheNativeEngineRefusesIt) {
   const auto issues = texts(issues_of(

@@ -20,6 +20,8 @@ TestersConfig testers_in_use(const Config& config, ResourceId id) {
 TileSettings tile_settings(const Config& config, ResourceId id, float scene_size, bool statistics,
                            const Observation& observed) {
   const TestersConfig testers = testers_in_use(config, id);
+  MemoryConfig memory = config.memory;
+  memory.shape_buffer_kib = shape_buffer_kib_of(memory.shape_buffer_kib, config.topology, id.value);
   return {resource_settings(config, scene_size),
           testers,
           config.accuracy,
@@ -29,7 +31,7 @@ TileSettings tile_settings(const Config& config, ResourceId id, float scene_size
           config.rays.banks,
           config.topology.shape == TopologyShape::kCentral,
           has_distributor(config),
-          config.memory,
+          memory,
           config.topology.link,
           config.faults.resource,
           statistics,

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "core/config/graph/graph.h"
+
+namespace carousel::config {
+
+/// Nodes that hold the lines of memory in turn, so many bytes each.
+struct Banks {
+  std::vector<std::uint32_t> nodes;  ///< of the graph
+  std::int64_t interleave_bytes = 0;
+};
+
+/// The parts of a machine that are drawn beside resources and routers, and who reaches which of them over links. A part
+/// that is not drawn has its place and its wires beside the links.
+struct DrawnParts {
+  std::vector<Banks> caches;           ///< a group for each entry of topology.nodes
+  std::vector<std::size_t> caches_of;  ///< by resource: the group that it asks; empty without caches
+  Banks memories;                      ///< no nodes: one memory, beside the links
+  std::optional<std::uint32_t> shading;
+  bool new_rays = false, completed_rays = false;  ///< they travel over links
+
+  std::size_t cache_nodes() const;
+};
+
+/// Finds the parts; what is wrong with them and with the ways to them is appended to `issues`. `line_bytes`:
+/// memory.line_bytes.
+DrawnParts find_parts(const TopologyConfig& config, const Graph& graph, std::int64_t line_bytes,
+                      std::vector<GraphIssue>& issues);
+
+}  // namespace carousel::config
