@@ -8,6 +8,7 @@
 #include "core/config/costs.h"
 #include "core/config/load/validate.h"
 #include "core/system/error.h"
+#include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/topology/wire_length.h"
 
 namespace carousel::app {
@@ -62,10 +63,16 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     store(AreaPart::kCollections, n * static_cast<double>(c.collections.capacity) * kIdBytes / kKiB);
   else
     store(AreaPart::kStacks, slots * kStackBytes / kKiB);
-  store(AreaPart::kShapeBuffers, n * static_cast<double>(c.memory.shape_buffer_kib));
+  double buffers = 0;
+  for (std::int64_t r = 0; r < c.topology.resources; ++r)
+    buffers += static_cast<double>(shape_buffer_kib_of(c.memory.shape_buffer_kib, c.topology, r));
+  store(AreaPart::kShapeBuffers, buffers);
   store(AreaPart::kL1, n * static_cast<double>(c.memory.l1_kib));
   out.link_mm = c.area.link_mm ? static_cast<double>(*c.area.link_mm) : std::sqrt(parts.mm2() / n);
-  const std::int64_t caches = (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by;
+  const ringbus::ParcelPlan drawn = ringbus::plan_parcels(c.topology, c.memory.line_bytes);
+  const std::int64_t caches = drawn.parts.caches.empty()
+                                  ? (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by
+                                  : static_cast<std::int64_t>(drawn.parts.cache_nodes());
   store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
   double places = 0;
   for (const ringbus::Topology::Wire& wire : topology.wires()) places += static_cast<double>(wire.depth);
@@ -85,6 +92,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   report::AreaOf& wires = parts[AreaPart::kWires];
   wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm *
                (wire_lengths(topology, c.topology.link.bytes_per_cycle) +
+                drawn.lengths_without_packets(c.topology.link.bytes_per_cycle) +
                 (has_distributor(c) ? 1 : 0));  // the bus to the testers
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
   report::AreaOf& shaders = parts[AreaPart::kShaders];

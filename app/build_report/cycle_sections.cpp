@@ -83,7 +83,7 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   for (std::size_t i = 0; i < c.fetched_ahead.size(); ++i) out.caches[i].ahead = c.fetched_ahead[i];
   if (c.own_caches) out.own_caches = {*c.own_caches, ratio(c.own_caches->port_busy, c.cycles * c.tiles.size()), {}};
   out.counts = c.memory;
-  out.dram_utilisation = ratio(c.memory.busy, c.cycles);
+  out.dram_utilisation = ratio(c.memory.busy, c.cycles * c.memories);
   out.ray_data = c.ray_data;
   out.triangle_strips = c.strips;
   if (config.l2_write == MemoryConfig::Write::kBack) out.drain = c.drain;

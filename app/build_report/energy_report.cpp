@@ -89,10 +89,14 @@ class Account {
 
   void packets() {
     const ringbus::Topology topology(c_.topology);
+    const std::vector<config::Graph::Link> others = drawn_.without_packets();  // behind those of packets
     for (std::size_t i = 0; i < r_.links->size(); ++i) {
       const auto bytes = static_cast<double>((*r_.links)[i].bytes.value_or(0));
+      const std::size_t wires = topology.wires().size();
+      const double length =
+          i < wires ? wire_length(topology, topology.wires()[i]) : drawn_.length(others.at(i - wires));
       parts_[EnergyPart::kPorts].add(bytes, pj(Cost::kHop));
-      parts_[EnergyPart::kWires].add(bytes * link_mm_ * wire_length(topology, topology.wires()[i]), pj(Cost::kWire));
+      parts_[EnergyPart::kWires].add(bytes * link_mm_ * length, pj(Cost::kWire));
     }
   }
 
@@ -107,9 +111,11 @@ class Account {
       parts_[EnergyPart::kDram].add(memory_times_ * bytes, pj(hbm ? Cost::kHbm : Cost::kDram));
       return;
     }
-    parts_[EnergyPart::kMessages].add(bytes, pj(Cost::kHop));
-    parts_[EnergyPart::kMessageWires].add(bytes * link_mm_ * std::sqrt(static_cast<double>(sharing(row))) / 2,
-                                          pj(Cost::kWire));
+    if (!travels_over_links(row)) {
+      parts_[EnergyPart::kMessages].add(bytes, pj(Cost::kHop));
+      parts_[EnergyPart::kMessageWires].add(bytes * link_mm_ * std::sqrt(static_cast<double>(sharing(row))) / 2,
+                                            pj(Cost::kWire));
+    }
     if (row.what == "new rays" || row.what == "completed rays") access(EnergyPart::kRayStore, bytes, rays_kib_);
     if (row.to == "L1") access(EnergyPart::kL1, bytes, l1_kib());
     if (row.what == "shape data") access(EnergyPart::kShapeBuffers, bytes, buffer_kib());
@@ -123,6 +129,13 @@ class Account {
     Parts::for_each([&]<class P>(std::size_t) { at_l2 |= is(P::kName); });
     if (at_l2) return std::min(c_.memory.shared_by, c_.topology.resources);
     return is("L1") ? 1 : c_.topology.resources;
+  }
+
+  /// The rows of links count what is drawn.
+  bool travels_over_links(const ByteRow& row) const {
+    if (row.what == "new rays") return drawn_.parts.new_rays;
+    if (row.what == "completed rays") return drawn_.parts.completed_rays;
+    return !drawn_.parts.caches.empty() && (row.from == "L2" || row.to == "L2");
   }
 
   void shading() {
@@ -140,10 +153,17 @@ class Account {
   double l2_kib() const { return static_cast<double>(c_.memory.l2_kib) / static_cast<double>(c_.memory.l2_banks); }
   double l1_kib() const { return static_cast<double>(c_.memory.l1_kib); }
   double line_bytes() const { return static_cast<double>(c_.memory.line_bytes); }
-  double buffer_kib() const { return static_cast<double>(c_.memory.shape_buffer_kib); }
+  /// The mean of all resources, as the report counts their accesses together.
+  double buffer_kib() const {
+    double sum = 0;
+    for (std::int64_t r = 0; r < c_.topology.resources; ++r)
+      sum += static_cast<double>(shape_buffer_kib_of(c_.memory.shape_buffer_kib, c_.topology, r));
+    return sum / static_cast<double>(c_.topology.resources);
+  }
 
   const report::Report& r_;
   const Config& c_;
+  ringbus::ParcelPlan drawn_ = ringbus::plan_parcels(c_.topology, c_.memory.line_bytes);
   double link_mm_;
   Costs costs_;
   double memory_times_, rays_kib_;

@@ -17,6 +17,7 @@
 #include "core/config/write.h"
 #include "report/csv/ray_csv.h"
 #include "report/text/number_text.h"
+#include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/protocol/deadlock.h"
 #include "ringbus/topology/drawn_shape.h"
 #include "ringbus/topology/graph_facts.h"
@@ -119,7 +120,10 @@ int check_command(const CheckArguments& arguments) {
   }
   if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty())
     text += fmt::format("ignored: {}\n", ignored_text(ignored));
-  if (p.config().topology.shape == TopologyShape::kGraph) text += graph_facts_text(p.config().topology);
+  if (p.config().topology.shape == TopologyShape::kGraph) {
+    text += graph_facts_text(p.config().topology);
+    text += ringbus::parcel_facts(ringbus::plan_parcels(p.config().topology, p.config().memory.line_bytes));
+  }
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
   print_result(resolved_yaml(p.absolute_config()) + "\n" + commented(text));
   if (!verdict.can_deadlock) return kDone;

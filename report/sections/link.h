@@ -35,8 +35,9 @@ template <class V>
 void describe(V& v, const Link& r) {
   v.field("from", r.from, "", "resource that sends");
   v.field("to", r.to, "", "resource that receives");
-  v.field("depth", r.depth, "packets", "capacity of the queue");
-  v.field("packets", r.packets, "packets", "packets carried");
+  v.field("depth", r.depth, "packets", "capacity of the queue; 0 for a link without packets");
+  v.field("packets", r.packets, "packets",
+          "packets carried, and other messages that links of a graph carry (topology.links.carries)");
   v.field("occupancy_mean", r.occupancy_mean, "packets",
           "mean of the packets waiting: at every eighth send (native), over time (cycle)");
   v.field("occupancy_max", r.occupancy_max, "packets",
@@ -45,7 +46,7 @@ void describe(V& v, const Link& r) {
           "sends refused by the full queue (native), cycles in which a packet waited for a credit (cycle)");
   v.field("utilisation", r.utilisation, "fraction",
           "fraction of the run's cycles in which the link moved a packet (cycle)");
-  v.field("bytes", r.bytes, "bytes", "bytes of the packets carried (cycle)");
+  v.field("bytes", r.bytes, "bytes", "bytes of all that was carried (cycle)");
   v.section("cycles", r.cycles, "cycles of the link; they add up to engine.cycles (cycle)");
   v.field("queue", r.queue, "", "kind of queue (native)");
   v.field("sent_at_once", r.sent_at_once, "packets", "mean of the packets of a send, where it took any (native)");

@@ -118,7 +118,7 @@ class CycleRun {
     out.paths_restarted = loss.paths_restarted();
     if (loss.times() && loss.times()->noticed > 0) c.stop = loss.times();
     for (const auto& tile : machine_.resources()) out.packets_discarded += tile->packets_discarded();
-    c.memory = machine_.memory().memory().counts();
+    c.memory = machine_.memory().counts();
     c.uses = uses();
     c.progress = log_.samples();
     c.all_begun = all_begun_;
@@ -127,7 +127,7 @@ class CycleRun {
     c.epochs = combine(traces);
     c.steps = merge_steps(traces);
     machine_.close(end);
-    c.dram = machine_.memory().memory().dram_use(end);
+    c.dram = machine_.memory().dram_use(end);
     if (machine_.recorder() != nullptr) {
       out.timeline = machine_.recorder()->timeline(end);
       out.facts = machine_.recorder()->facts();
@@ -146,12 +146,14 @@ class CycleRun {
       c.links.push_back({wire.from.value,
                          wire.to.value,
                          {port.busy(end), port.stalled()},
-                         machine_.network().wire(c.links.size()).queue,
-                         machine_.network().wire(c.links.size()).packets.bytes().sent});
+                         machine_.network().far(c.links.size()).queue,
+                         machine_.network().near(c.links.size()).packets.bytes().sent});
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(wire.depth), s, {}, port.faults()});
     });
+    add_parcels(end, out);
+    c.memories = machine_.memory().memories().size();
     if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->bytes();
     if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().counts();
     if (complete) c.drain = machine_.drain(end);
@@ -169,6 +171,31 @@ class CycleRun {
       check_lines(machine_, c.bytes, config_.memory);
     }
     return out;
+  }
+
+  /// What links carried beside packets: it adds to the links that packets use, and the others follow these.
+  void add_parcels(Cycle end, RunResult& out) const {
+    if (machine_.parcels() == nullptr) return;
+    CycleResult& c = *out.cycle;
+    const ParcelPlan& plan = machine_.parcels()->plan();
+    for (std::size_t i = 0; i < plan.links.size(); ++i) {
+      const config::Graph::Link& drawn = plan.drawn(plan.links[i]);
+      const LinkTime& time = machine_.parcels()->time_of(i);
+      if (plan.links[i].wire == ParcelPlan::kNone) {
+        c.links.push_back({drawn.from, drawn.to, {time.busy(end), 0}, time.queue(), time.bytes()});
+        LinkStatistics s;
+        s.packets = time.parcels();
+        out.links.push_back({ResourceId(drawn.from), ResourceId(drawn.to), 0, s, {}, {}});
+        continue;
+      }
+      LinkUse& link = c.links[plan.links[i].wire];
+      link.use.busy = time.busy(end);
+      link.use.stalled = std::min(link.use.stalled, end - link.use.busy);
+      link.queue.packet_cycles += time.queue().packet_cycles;
+      link.queue.most += time.queue().most;
+      link.bytes += time.bytes();
+      out.links[plan.links[i].wire].statistics.packets += time.parcels();
+    }
   }
 
   void note_progress(Cycle at) {
@@ -207,9 +234,15 @@ class CycleRun {
       for (const auto& cache : machine_.memory().own_caches()) own += cache->statistics().port_busy;
       out.push_back({"l1_port", tiles, own});
     }
-    out.push_back({"memory_bandwidth", 1, machine_.memory().memory().busy()});
+    out.push_back({"memory_bandwidth", static_cast<double>(machine_.memory().memories().size()),
+                   machine_.memory().counts().busy});
     out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
     return out;
+  }
+
+  const OutPort& port_of(std::uint32_t wire) const {
+    const Topology& topology = machine_.shared().topology;
+    return machine_.out_of(topology.wires()[wire].from)[topology.out_port_of(wire)];
   }
 
   /// The links are as many media side by side; a bus is one, to which the links of the resources lead: what one of them
@@ -220,6 +253,15 @@ class CycleRun {
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
       if (!bus || wire.from.value < machine_.resources().size()) out.busy += machine_.out_of(wire.from)[port].busy();
     });
+    if (machine_.parcels() == nullptr) return out;
+    const ParcelPlan& plan = machine_.parcels()->plan();
+    for (std::size_t i = 0; i < plan.links.size(); ++i) {
+      out.busy += machine_.parcels()->time_of(i).busy();
+      if (const std::uint32_t shared = plan.links[i].wire; shared == ParcelPlan::kNone)
+        out.parts += 1;
+      else  // which has the packets too
+        out.busy -= port_of(shared).busy();
+    }
     return out;
   }
 

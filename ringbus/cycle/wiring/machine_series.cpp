@@ -25,7 +25,7 @@ class SeriesWriter {
       end = std::max(end, samples.end());
     };
     look(machine.shading().samples());
-    look(machine.memory().memory().samples());
+    for (const auto& memory : machine.memory().memories()) look(memory->samples());
     for (const auto& resource : machine.resources()) look(resource->samples());
     for (const auto& hub : machine.network().hubs()) look(hub->samples());
     out_.unit = "cycles";
@@ -81,9 +81,9 @@ class SeriesWriter {
     row({"machine", "links busy", "share", Kind::kMean}, busy, std::max<std::size_t>(1, links));
     row({"machine", "bytes on links", "bytes", Kind::kSum}, bytes);
     Sums dram = zeros();
-    machine_.memory().memory().samples().add_to(dram, interval_, 0);
+    for (const auto& memory : machine_.memory().memories()) memory->samples().add_to(dram, interval_, 0);
     row({"machine", "bytes of DRAM", "bytes", Kind::kSum}, dram);
-    const double width = machine_.memory().memory().peak_bytes_per_cycle();
+    const double width = machine_.memory().peak_bytes_per_cycle();
     row({"machine", "DRAM busy", "share", Kind::kMean}, dram, width);
   }
 

@@ -1,51 +1,116 @@
 #include "ringbus/cycle/wiring/memory_system.h"
 
 #include <algorithm>
+#include <utility>
+
+#include "ringbus/cycle/parcels/door.h"
 
 namespace carousel::ringbus::cycle {
+
+namespace {
+
+Channel<std::uint64_t>& channel(std::vector<std::unique_ptr<Channel<std::uint64_t>>>& into, ChannelList& list,
+                                MessageKind kind, const ChannelEnds& ends) {
+  return *into.emplace_back(std::make_unique<Channel<std::uint64_t>>(list.at(kind, ends)));
+}
+
+/// Runs agents that send each other things, event by event in the order of time.
+void run_to_rest(const std::vector<Agent*>& agents) {
+  for (;;) {
+    Agent* first = nullptr;
+    for (Agent* agent : agents)
+      if (first == nullptr || agent->next() < first->next()) first = agent;
+    if (first == nullptr || first->next() == kNever) return;
+    first->run(first->next() + 1);
+  }
+}
+
+}  // namespace
 
 MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
                            const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
                            const std::vector<ShapeCache::Client>& clients,
-                           const std::vector<std::vector<ShapeCache::Client>>& others)
+                           const std::vector<std::vector<ShapeCache::Client>>& others, const DrawnAskers* drawn)
     : shared_by_(static_cast<std::size_t>(config.shared_by)) {
-  const auto channel = [&](auto& into, MessageKind kind, const ChannelEnds& ends) -> Channel<std::uint64_t>& {
-    return *into.emplace_back(std::make_unique<Channel<std::uint64_t>>(list.at(kind, ends)));
-  };
-  std::vector<MemoryAgent::Client> memory_clients;
   std::vector<ShapeCache::OwnCache> own;
   const MemoryConfig own_config = ShapeCache::own_cache(config);
+  const Cycle own_answer = agents.caches_drawn ? kDoorCycles : ShapeCache::answer_latency(config);
   for (std::size_t r = 0; r < clients.size() && own_kinds; ++r) {
     const std::uint32_t l1 = agents.own_cache(r), l2 = agents.cache_behind(r);
     Channel<std::uint64_t>& down =
-        channel(own_down_, own_kinds->requests, {l1, l2, MemoryAgent::request_latency(own_config)});
-    Channel<std::uint64_t>& up = channel(own_up_, own_kinds->lines, {l2, l1, ShapeCache::answer_latency(config)});
+        channel(own_down_, list, own_kinds->requests, {l1, l2, MemoryAgent::request_latency(own_config)});
+    Channel<std::uint64_t>& up = channel(own_up_, list, own_kinds->lines, {l2, l1, own_answer});
     own_.push_back(std::make_unique<ShapeCache>(own_config, std::vector{clients[r]}, down, up));
     own_.back()->ask_a_cache();
     own.push_back({&down, &up});
   }
-  for (std::size_t first = 0; first < clients.size(); first += shared_by_) {
-    const std::size_t last = std::min(clients.size(), first + shared_by_);
-    const std::uint32_t l2 = agents.cache_behind(first), dram = agents.memory();
-    Channel<std::uint64_t>& down =
-        channel(to_memory_, kinds.requests, {l2, dram, MemoryAgent::request_latency(config)});
-    Channel<std::uint64_t>& up = channel(from_memory_, kinds.lines, {dram, l2, MemoryAgent::answer_latency(config)});
-    const auto sharers = [&](const auto& all) {
-      return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
-                         all.begin() + static_cast<std::ptrdiff_t>(last));
-    };
-    std::vector<ShapeCache::Client> askers;
-    if (own.empty()) askers = sharers(clients);
-    const std::vector<ShapeCache::Client>& more = others[caches_.size()];
-    askers.insert(askers.end(), more.begin(), more.end());
-    const std::vector<ShapeCache::OwnCache> before = own.empty() ? std::vector<ShapeCache::OwnCache>{} : sharers(own);
-    caches_.push_back(std::make_unique<ShapeCache>(config, before, std::move(askers), down, up));
-    memory_clients.push_back({&down, &up});
+  if (drawn != nullptr && !drawn->caches.empty()) {
+    for (const DrawnAskers::AtCache& askers : drawn->caches)
+      add_cache(list, kinds, agents, config, askers.own_caches, askers.resources);
+  } else {
+    for (std::size_t first = 0; first < clients.size(); first += shared_by_) {
+      const std::size_t last = std::min(clients.size(), first + shared_by_);
+      const auto sharers = [&](const auto& all) {
+        return std::vector(all.begin() + static_cast<std::ptrdiff_t>(first),
+                           all.begin() + static_cast<std::ptrdiff_t>(last));
+      };
+      std::vector<ShapeCache::Client> askers;
+      if (own.empty()) askers = sharers(clients);
+      const std::vector<ShapeCache::Client>& more = others[caches_.size()];
+      askers.insert(askers.end(), more.begin(), more.end());
+      add_cache(list, kinds, agents, config, own.empty() ? std::vector<ShapeCache::OwnCache>{} : sharers(own),
+                std::move(askers));
+    }
   }
-  memory_ = make_memory(config, clock_mhz, std::move(memory_clients));
-  const auto width = static_cast<std::uint64_t>(memory_->peak_bytes_per_cycle());
+  if (drawn != nullptr && !drawn->memories.empty()) {
+    for (const std::vector<MemoryAgent::Client>& askers : drawn->memories)
+      memories_.push_back(make_memory(config, clock_mhz, askers));
+  } else {
+    memories_.push_back(make_memory(config, clock_mhz, to_memory()));
+  }
+  const auto width = static_cast<std::uint64_t>(peak_bytes_per_cycle());
   list.set_width(kinds.lines, width);
   list.set_width(kinds.written, width);
+}
+
+void MemorySystem::add_cache(ChannelList& list, const MemoryKinds& kinds, const AgentNumbers& agents,
+                             const MemoryConfig& config, std::vector<ShapeCache::OwnCache> own_caches,
+                             std::vector<ShapeCache::Client> askers) {
+  const std::uint32_t l2 = agents.cache(caches_.size()), dram = agents.memory_behind(caches_.size());
+  const Cycle answer = agents.memories_drawn ? kDoorCycles : MemoryAgent::answer_latency(config);
+  Channel<std::uint64_t>& down =
+      channel(to_memory_, list, kinds.requests, {l2, dram, MemoryAgent::request_latency(config)});
+  Channel<std::uint64_t>& up = channel(from_memory_, list, kinds.lines, {dram, l2, answer});
+  caches_.push_back(std::make_unique<ShapeCache>(config, std::move(own_caches), std::move(askers), down, up));
+}
+
+std::vector<MemoryAgent::Client> MemorySystem::ends(const Channels& down, const Channels& up) {
+  std::vector<MemoryAgent::Client> out;
+  for (std::size_t i = 0; i < down.size(); ++i) out.push_back({down[i].get(), up[i].get()});
+  return out;
+}
+
+MemoryCounts MemorySystem::counts() const {
+  MemoryCounts sum;
+  for (const auto& memory : memories_) sum += memory->counts();
+  return sum;
+}
+
+double MemorySystem::peak_bytes_per_cycle() const {
+  double sum = 0;
+  for (const auto& memory : memories_) sum += memory->peak_bytes_per_cycle();
+  return sum;
+}
+
+std::optional<DramUse> MemorySystem::dram_use(Cycle end) const {
+  std::optional<DramUse> sum = memories_.front()->dram_use(end);
+  for (std::size_t i = 1; i < memories_.size() && sum; ++i) {
+    const std::optional<DramUse> one = memories_[i]->dram_use(end);
+    sum->cycles = std::max(sum->cycles, one->cycles);
+    sum->peak_bytes_per_second += one->peak_bytes_per_second;
+    sum->channels.insert(sum->channels.end(), one->channels.begin(), one->channels.end());
+  }
+  return sum;
 }
 
 void MemorySystem::warm(const WarmCaches& from) {
@@ -53,17 +118,28 @@ void MemorySystem::warm(const WarmCaches& from) {
   for (std::size_t c = 0; c < caches_.size(); ++c) caches_[c]->warm((*from.lines)[c], from.part);
 }
 
-CacheDrain MemorySystem::drain(Cycle end) {
+CacheDrain MemorySystem::drain(Cycle end, const std::vector<Agent*>& between, Cycle quiet_from) {
   CacheDrain out;
-  const MemoryCounts before = memory_->counts();
-  memory_->log(nullptr);
-  const Cycle begin = std::max(end, memory_->last_step());
+  const MemoryCounts before = counts();
+  Cycle begin = std::max(end, quiet_from);
+  for (const auto& memory : memories_) {
+    memory->log(nullptr);
+    begin = std::max(begin, memory->last_step());
+  }
   for (const auto& cache : caches_) cache->drain(begin);
-  memory_->run(kNever);
-  const MemoryCounts after = memory_->counts();
+  if (between.empty()) {
+    for (const auto& memory : memories_) memory->run(kNever);
+  } else {
+    std::vector<Agent*> all = between;
+    for (const auto& memory : memories_) all.push_back(memory.get());
+    run_to_rest(all);
+  }
+  const MemoryCounts after = counts();
   out.lines = after.lines_written - before.lines_written;
-  out.bytes = out.lines * memory_->line_bytes();
-  if (out.lines > 0) out.cycles = memory_->idle_from() - end;
+  out.bytes = out.lines * memories_.front()->line_bytes();
+  if (out.lines == 0) return out;
+  for (const auto& memory : memories_)
+    if (memory->idle_from() > end) out.cycles = std::max(out.cycles, memory->idle_from() - end);
   return out;
 }
 
@@ -72,8 +148,8 @@ void MemorySystem::count_written(ByteRow& row) const {
     const CacheCounts& counts = cache->statistics();
     row.messages += counts.written + counts.written_back + counts.drained;
   }
-  row.bytes = row.messages * memory_->line_bytes();
-  row.bytes_taken = memory_->counts().lines_written * memory_->line_bytes();
+  row.bytes = row.messages * memories_.front()->line_bytes();
+  row.bytes_taken = counts().lines_written * memories_.front()->line_bytes();
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -16,7 +16,17 @@
 
 namespace carousel::ringbus::cycle {
 
-/// The caches, each shared by some neighbouring resources, and the memory behind them.
+/// The askers of caches and memories that are drawn: the far ends of the links' channels.
+struct DrawnAskers {
+  struct AtCache {
+    std::vector<ShapeCache::Client> resources;
+    std::vector<ShapeCache::OwnCache> own_caches;
+  };
+  std::vector<AtCache> caches;
+  std::vector<std::vector<MemoryAgent::Client>> memories;  ///< empty: one memory, beside the links
+};
+
+/// The caches, each shared by some neighbouring resources, and the memory behind them; or as they are drawn.
 class MemorySystem {
  public:
   /// `clients` by resource. `others`: by L2, those that ask it beside resources. `clock_mhz`: engine.clock_mhz. With
@@ -24,7 +34,7 @@ class MemorySystem {
   MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
                const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
                const std::vector<ShapeCache::Client>& clients,
-               const std::vector<std::vector<ShapeCache::Client>>& others);
+               const std::vector<std::vector<ShapeCache::Client>>& others, const DrawnAskers* drawn = nullptr);
   static std::size_t shared_caches(const MemoryConfig& config, std::int64_t resources) {
     return static_cast<std::size_t>((resources - 1) / config.shared_by + 1);
   }
@@ -32,25 +42,34 @@ class MemorySystem {
   const std::vector<std::unique_ptr<ShapeCache>>& caches() const { return caches_; }
   /// The resources' own, by resource; empty if they have none.
   const std::vector<std::unique_ptr<ShapeCache>>& own_caches() const { return own_; }
-  /// The cache that a resource asks.
-  const ShapeCache& cache_of(std::size_t resource) const {
-    return own_.empty() ? *caches_[resource / shared_by_] : *own_[resource];
-  }
-  MemoryAgent& memory() { return *memory_; }
-  const MemoryAgent& memory() const { return *memory_; }
+  const std::vector<std::unique_ptr<MemoryAgent>>& memories() const { return memories_; }
+  /// Of all memories together.
+  MemoryCounts counts() const;
+  double peak_bytes_per_cycle() const;
+  /// Null unless there are banks. Call it after the memories are closed.
+  std::optional<DramUse> dram_use(Cycle end) const;
+  /// The near ends of the channels of the L2s to memory, and of the resources' own caches to their L2s.
+  std::vector<MemoryAgent::Client> to_memory() const { return ends(to_memory_, from_memory_); }
+  std::vector<MemoryAgent::Client> own_to_l2() const { return ends(own_down_, own_up_); }
   /// Before the start. A machine with other caches than those that held the lines starts cold.
   void warm(const WarmCaches& from);
-  /// The run was over at `end`: caches write back all that they hold for memory.
-  CacheDrain drain(Cycle end);
+  /// The run was over at `end`: caches write back all that they hold for memory. `between`: agents over which that
+  /// travels, none of which has done anything since `quiet_from`.
+  CacheDrain drain(Cycle end, const std::vector<Agent*>& between, Cycle quiet_from);
   /// Fills in the row of the lines that the caches have written to memory.
   void count_written(ByteRow& row) const;
 
  private:
+  using Channels = std::vector<std::unique_ptr<Channel<std::uint64_t>>>;
+  static std::vector<MemoryAgent::Client> ends(const Channels& down, const Channels& up);
+  void add_cache(ChannelList& list, const MemoryKinds& kinds, const AgentNumbers& agents, const MemoryConfig& config,
+                 std::vector<ShapeCache::OwnCache> own_caches, std::vector<ShapeCache::Client> askers);
+
   std::size_t shared_by_;
-  std::vector<std::unique_ptr<Channel<std::uint64_t>>> to_memory_, from_memory_;  // by cache
-  std::vector<std::unique_ptr<Channel<std::uint64_t>>> own_down_, own_up_;        // by resource
+  Channels to_memory_, from_memory_;  // by cache
+  Channels own_down_, own_up_;        // by resource
   std::vector<std::unique_ptr<ShapeCache>> caches_, own_;
-  std::unique_ptr<MemoryAgent> memory_;
+  std::vector<std::unique_ptr<MemoryAgent>> memories_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -6,6 +6,7 @@
 
 #include "core/config/fields/memory.h"
 #include "ringbus/cycle/messages/side_ports.h"
+#include "ringbus/cycle/parcels/door.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
 #include "ringbus/cycle/wiring/agent_numbers.h"
 
@@ -30,17 +31,23 @@ struct SideLatencies {
         answer(ShapeCache::answer_latency(nearest)) {}
 };
 
-/// The channels of one resource beside the links.
+/// The channels of one resource beside the links. Where a part is drawn, they lead to the links.
 class SideChannels {
  public:
   /// `helps`: the resource shades when it has nothing to test; `calls_shader`: it asks shading for any-hit calls. With
   /// a kind of pushed shapes its cache sends it shapes for which others have asked.
   SideChannels(ChannelList& list, const SideKinds& kinds, const SideLatencies& latency, const AgentNumbers& agents,
                std::uint32_t resource, bool helps, bool calls_shader)
-      : new_rays_(list.at(kinds.control.new_rays, {agents.shading(), resource, latency.control, true})),
-        completed_(list.at(kinds.control.completed, {resource, agents.shading(), latency.control, true})),
+      : new_rays_(list.at(kinds.control.new_rays,
+                          agents.new_rays_drawn
+                              ? ChannelEnds{agents.shading(), agents.relay(agents.shading_node), latency.control}
+                              : ChannelEnds{agents.shading(), resource, latency.control, true})),
+        completed_(list.at(kinds.control.completed,
+                           agents.completed_drawn ? ChannelEnds{resource, agents.relay(resource), latency.control}
+                                                  : ChannelEnds{resource, agents.shading(), latency.control, true})),
         fetch_(list.at(kinds.fetch.requests, {resource, agents.nearest_cache(resource), latency.request})),
-        fetched_(list.at(kinds.fetch.data, {agents.nearest_cache(resource), resource, latency.answer, true})) {
+        fetched_(list.at(kinds.fetch.data, {agents.nearest_cache(resource), resource,
+                                            agents.asks_over_links() ? kDoorCycles : latency.answer, true})) {
     const ChannelEnds to_shading{resource, agents.shading(), latency.control},
         from_shading{agents.shading(), resource, latency.control, true};
     if (kinds.pushed)

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "core/system/error.h"
 #include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/tile/tile.h"
 #include "ringbus/time/wait_cycle.h"
@@ -21,11 +24,29 @@ std::optional<std::uint32_t> local_packets(const Config& config) {
 }
 
 /// The resources and hubs have the topology's numbers.
-AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory) {
+AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory, const ParcelPlan& plan) {
   const auto resources = static_cast<std::uint32_t>(topology.resources());
-  return {resources + static_cast<std::uint32_t>(topology.hubs().size()),
-          static_cast<std::uint32_t>(MemorySystem::shared_caches(memory, resources)), memory.l1_kib > 0 ? resources : 0,
-          static_cast<std::uint32_t>(memory.shared_by)};
+  AgentNumbers out{resources + static_cast<std::uint32_t>(topology.hubs().size()),
+                   static_cast<std::uint32_t>(MemorySystem::shared_caches(memory, resources)),
+                   memory.l1_kib > 0 ? resources : 0, static_cast<std::uint32_t>(memory.shared_by)};
+  if (!plan.any()) return out;
+  const config::DrawnParts& parts = plan.parts;
+  out.relays = static_cast<std::uint32_t>(plan.graph.nodes.size());
+  out.shared_links = static_cast<std::uint32_t>(
+      std::ranges::count_if(plan.links, [](const ParcelPlan::Link& link) { return link.wire != ParcelPlan::kNone; }));
+  if (!parts.caches.empty()) {
+    out.caches_drawn = true;
+    out.caches = static_cast<std::uint32_t>(parts.cache_nodes());
+    out.first_cache_node = parts.caches.front().nodes.front();
+  }
+  if (!parts.memories.nodes.empty()) {
+    out.memories_drawn = true;
+    out.memories = static_cast<std::uint32_t>(parts.memories.nodes.size());
+  }
+  out.new_rays_drawn = parts.new_rays;
+  out.completed_drawn = parts.completed_rays;
+  out.shading_node = parts.shading.value_or(0);
+  return out;
 }
 
 ShadingSettings shading_settings(const Config& config) {
@@ -54,25 +75,36 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                         ? std::make_unique<const ShapeBlocks>(
                               accel, shape_memory_, static_cast<std::uint64_t>(config.collections.block_bytes))
                         : nullptr),
-      network_(channels_, shared_, config.topology.link, config.faults, config.testers.contexts),
+      plan_(plan_parcels(config.topology, config.memory.line_bytes)),
+      numbers_(agent_numbers(shared_.topology, config.memory, plan_)),
+      network_(channels_, shared_, config.topology.link, config.faults, config.testers.contexts,
+               ParcelNetwork::shared_wires(plan_, numbers_)),
       kinds_(machine_kinds(
           channels_, config.topology.link, config.memory,
           config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty(),
           has_distributor(config) ? &config.testers.distributor : nullptr, config.collections.traversal)),
-      numbers_(agent_numbers(shared_.topology, config.memory)),
       parts_(channels_, numbers_, config.parts, config.memory, config.topology.link, shared_.topology.resources()) {
+  if (plan_.any())
+    parcels_ = std::make_unique<ParcelNetwork>(channels_, plan_, numbers_, shared_.topology, network_,
+                                               config.topology.link, config.memory);
   const SideLatencies latencies(config.topology.link, ShapeCache::nearest(config.memory));
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ = std::make_unique<Recorder>(config.testers, has_distributor(config), shared_, observed);
-  std::vector<SidePorts> sides;
+  std::vector<SidePorts> sides;  // of shading
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
     const ResourceId id(r);
     sides_.push_back(std::make_unique<SideChannels>(channels_, kinds_.side, latencies, numbers_, r,
                                                     config.shading.idle_resources_shade, calls_shader(config, accel)));
-    SidePorts& side = sides.emplace_back(sides_.back()->ports());
+    SidePorts side = sides_.back()->ports();
     side.hints = parts_.hints_of(r);
     cache_clients.push_back({side.fetch, side.fetched, side.pushed});
+    sides.push_back(side);
+    if (parcels_) {
+      const ParcelNetwork::Sides over_links = parcels_->join(r, side);
+      side = over_links.resource;
+      sides.back() = over_links.shading;
+    }
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     settings.blocks = shape_blocks_.get();
     if (recorder_) settings.recording = recorder_->of_resource(id);
@@ -102,10 +134,19 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   }
   for (std::uint32_t c = 0; c < numbers_.caches; ++c)
     for (Channel<FetchRequest>* ahead : parts_.ahead_at(c)) others[c].push_back({ahead});
+  DrawnAskers askers;
+  if (parcels_) askers = parcels_->askers();
   memory_ = std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
-                                           config.engine.clock_mhz, cache_clients, others);
-  memory_->memory().sample(observed.samples);
-  memory_->memory().log(observed.memory);
+                                           config.engine.clock_mhz, cache_clients, others,
+                                           parcels_ ? &askers : nullptr);
+  if (parcels_) parcels_->join(*memory_);
+  if (observed.memory != nullptr && memory_->memories().size() > 1)
+    throw SimulationError(
+        fmt::format("the requests to {} memories are no single list; expected one memory", memory_->memories().size()));
+  for (const auto& memory : memory_->memories()) {
+    memory->sample(observed.samples);
+    memory->log(observed.memory);
+  }
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
     Hub& hub = *network_.hubs()[h];
     hub.sample(observed.samples);
@@ -127,7 +168,11 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
   // Each part goes to the thread of its L2.
   for (std::size_t i = 0; i < parts_.agents().size(); ++i)
     parts[i % numbers_.caches * threads / numbers_.caches].push_back(parts_.agents()[i]);
-  parts.back().push_back(&memory_->memory());
+  for (const auto& memory : memory_->memories()) parts.back().push_back(memory.get());
+  if (parcels_) {
+    share(parcels_->relays());
+    if (!parcels_->shared_links().empty()) share(parcels_->shared_links());
+  }
   parts.back().push_back(shading_.get());
   return parts;
 }
@@ -135,7 +180,7 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
 void SimulatedMachine::close(Cycle end) const {
   for (const auto& resource : resources_) resource->close(end);
   for (const auto& hub : network_.hubs()) hub->close(end);
-  memory_->memory().close(end);
+  for (const auto& memory : memory_->memories()) memory->close(end);
   shading_->close(end);
 }
 
@@ -148,8 +193,12 @@ void SimulatedMachine::connect(WakeupTable& wakeups) const {
   add(network_.hubs());
   add(memory_->caches());
   add(memory_->own_caches());
-  agents.push_back(&memory_->memory());
+  add(memory_->memories());
   agents.push_back(shading_.get());
+  if (parcels_) {
+    add(parcels_->relays());
+    add(parcels_->shared_links());
+  }
   agents.insert(agents.end(), parts_.agents().begin(), parts_.agents().end());
   channels_.connect(wakeups, agents);
 }

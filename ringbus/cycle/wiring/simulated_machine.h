@@ -16,6 +16,7 @@
 #include "ringbus/cycle/wiring/machine_parts.h"
 #include "ringbus/cycle/wiring/memory_system.h"
 #include "ringbus/cycle/wiring/network.h"
+#include "ringbus/cycle/wiring/parcel_network.h"
 #include "ringbus/cycle/wiring/ray_data_channels.h"
 #include "ringbus/cycle/wiring/recorder.h"
 #include "ringbus/cycle/wiring/side_channels.h"
@@ -41,6 +42,8 @@ class SimulatedMachine {
   Recorder* recorder() const { return recorder_.get(); }
   const MachineParts& parts() const { return parts_; }
   const ShadingAgent& shading() const { return *shading_; }
+  /// Null unless links carry more than packets.
+  const ParcelNetwork* parcels() const { return parcels_.get(); }
   const std::vector<std::unique_ptr<ResourceAgent>>& resources() const { return resources_; }
   /// Every channel between two agents.
   const ChannelList& channels() const { return channels_; }
@@ -57,7 +60,9 @@ class SimulatedMachine {
   /// rest.
   std::string describe_waits() const;
   /// After close(), and when all else has been counted: caches write back all that they hold for memory.
-  CacheDrain drain(Cycle end) const { return memory_->drain(end); }
+  CacheDrain drain(Cycle end) const {
+    return parcels_ ? memory_->drain(end, parcels_->agents(), parcels_->quiet_from()) : memory_->drain(end, {}, end);
+  }
   /// The run is over at `end`: all agents make their last readings.
   void close(Cycle end) const;
   /// Calls `body` with each wire and the port by which it leaves its node.
@@ -85,10 +90,12 @@ class SimulatedMachine {
   ShapeMemory shape_memory_;
   std::unique_ptr<const ShapeBlocks> shape_blocks_;  // null: collections are keyed by nodes
   ChannelList channels_;
+  ParcelPlan plan_;
+  AgentNumbers numbers_;
   Network network_;
   MachineKinds kinds_;
-  AgentNumbers numbers_;
   MachineParts parts_;
+  std::unique_ptr<ParcelNetwork> parcels_;                  // null: links carry packets alone
   std::vector<std::unique_ptr<SideChannels>> sides_;        // by resource
   std::vector<std::unique_ptr<RayDataChannels>> ray_data_;  // by L2
   std::vector<std::unique_ptr<ResourceAgent>> resources_;

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <deque>
+
+#include "ringbus/results/cycle_result.h"
+#include "ringbus/time/clock.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The time of a link on which parcels travel: one behind the other without a gap, in the order in which they come, as
+/// many in a cycle as fit into the link's width. A packet begins and ends with a cycle.
+class LinkTime {
+ public:
+  explicit LinkTime(std::uint64_t bytes_per_cycle) : width_(bytes_per_cycle) {}
+
+  /// The cycles in which the first and the last byte of something leave.
+  struct Passage {
+    Cycle head = 0, tail = 0;
+  };
+  /// A parcel of `bytes` may leave at `ready`, not before any that came earlier.
+  Passage parcel(std::uint64_t bytes, Cycle ready) {
+    const std::uint64_t begin = std::max(taken_, ready * width_);
+    taken_ = begin + std::max<std::uint64_t>(1, bytes);
+    bytes_ += bytes;
+    ++parcels_;
+    note(begin, ready);
+    return {begin / width_, ceil_div(taken_, width_) - 1};
+  }
+  /// Likewise for a packet that occupies the link for so many cycles. Returns the cycle in which it begins.
+  Cycle packet(Cycle cycles, Cycle ready) {
+    const Cycle begin = std::max(ceil_div(taken_, width_), ready);
+    taken_ = (begin + cycles) * width_;
+    note(begin * width_, ready);
+    return begin;
+  }
+
+  std::uint64_t parcels() const { return parcels_; }
+  std::uint64_t bytes() const { return bytes_; }  ///< of parcels
+  /// Cycles before `end` in which the link moved something; not before the last of it began.
+  Cycle busy(Cycle end = kNever) const { return busy_to_ <= end ? busy_ : busy_ - std::min(busy_, busy_to_ - end); }
+  /// What waited for the link.
+  const Occupancy& queue() const { return queue_; }
+
+ private:
+  void note(std::uint64_t begin, Cycle ready) {
+    const Cycle first = begin / width_, end = ceil_div(taken_, width_);
+    busy_ += end - std::min(end, std::max(first, busy_to_));
+    busy_to_ = end;
+    while (!waiting_.empty() && waiting_.front() <= ready) waiting_.pop_front();
+    if (first <= ready) return;
+    queue_.packet_cycles += first - ready;
+    waiting_.push_back(first);
+    queue_.most = std::max<std::uint64_t>(queue_.most, waiting_.size());
+  }
+
+  std::uint64_t width_;
+  std::uint64_t taken_ = 0;  // up to this byte of time, of which a cycle has width_
+  std::uint64_t parcels_ = 0, bytes_ = 0;
+  Cycle busy_ = 0, busy_to_ = 0;
+  std::deque<Cycle> waiting_;  // when those that wait begin
+  Occupancy queue_;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "core/config/graph/drawn_parts.h"
+#include "core/config/graph/graph.h"
+
+namespace carousel::ringbus {
+
+/// What travels over drawn links beside packets (`topology.links.carries`), and between which parts: plain data of a
+/// configuration, which must outlive it. Nothing where no such part is drawn.
+///
+/// These messages wait for nothing but the time of links: every node has room for all of them there are. Their number
+/// is bounded, as an answer follows a request, and requests wait for places of shape buffers, misses or slots. So
+/// neither requests nor answers nor packets hold up one another for ever, and no circle of links can close.
+struct ParcelPlan {
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// A link that carries more than packets, or none of them.
+  struct Link {
+    std::uint32_t link = 0;      ///< in the graph
+    std::uint32_t wire = kNone;  ///< the topology's wire that it is too; kNone: no packet travels there
+  };
+
+  config::Graph graph;
+  config::DrawnParts parts;
+  std::vector<Link> links;
+
+  bool any() const { return !links.empty(); }
+  const config::Graph::Link& drawn(const Link& link) const { return graph.links[link.link]; }
+  /// The links on which no packet travels, in order.
+  std::vector<config::Graph::Link> without_packets() const;
+  /// The length of a link in links between neighbours, as wire_length(): a node that is no resource stands beside the
+  /// nearest one.
+  double length(const config::Graph::Link& link) const;
+  /// The lengths of all without packets, each times its width over `bytes_per_cycle`.
+  double lengths_without_packets(std::int64_t bytes_per_cycle) const;
+
+ private:
+  friend ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes);
+  std::vector<std::uint32_t> beside_;  // by node: the resource beside which it stands
+};
+
+/// `line_bytes`: memory.line_bytes. Throws a SimulationError if the drawing has faults, which checked configurations
+/// have not.
+ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes);
+
+/// Lines for people: the parts and the longest ways to them.
+std::string parcel_facts(const ParcelPlan& plan);
+
+}  // namespace carousel::ringbus
