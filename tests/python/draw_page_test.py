@@ -14,7 +14,7 @@ class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
         page = (SOURCE / "docs" / "draw-a-machine.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 6)
+        self.assertEqual(len(blocks), 7)
         printed = []
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "bin").mkdir()
@@ -31,7 +31,12 @@ class DrawPage(unittest.TestCase):
         self.assertIn("# graph: 16 resources, 2 routers, 38 links of one way", printed[2])
         self.assertIn("# busiest: door[0] > door[1], on 64 of 256 ways", printed[2])
         self.assertIn("# deadlock: impossible.", printed[2])
-        self.assertIn("# deadlock: impossible. no circle", printed[5])
+        self.assertIn("# parts: 2 caches, 2 memories, 0 shading, 40 links that carry no packets", printed[3])
+        self.assertIn("# ways to l2_left: 8 cycles at most, from left[0] to l2_left", printed[3])
+        self.assertIn("# ways to memory: 42 cycles at most, from l2_left to dram[1]", printed[3])
+        # The link between the dies limits the machine.
+        self.assertRegex(printed[5], r"\Adoor\[1\] +> door\[0\] ")
+        self.assertIn("# deadlock: impossible. no circle", printed[6])
 
 
 if __name__ == "__main__":
