@@ -193,8 +193,13 @@ TEST(GraphConfig, AnOverrideNamesNodes) {
       "topology:\n  shape: graph\n  nodes: [{name: a, count: 2}, {name: b, count: 2}]\n  links: [{ring: 'a[*], "
       "b[*]'}]\n"
       "  overrides: [{nodes: 'b[*]', testers: {box: {units: 3}}}, {resource: 0, testers: {box: {units: 5}}}]\n");
-  for (const auto& [resource, units] : {std::pair{0, 5}, {1, 1}, {2, 3}, {3, 3}})
-    EXPECT_EQ(testers_of(config.testers, config.topology, resource).units[UnitKind::kBox].units, units) << resource;
+  const auto units = [&](std::int64_t resource) {
+    return testers_of(config.testers, config.topology, resource).units[UnitKind::kBox].units;
+  };
+  EXPECT_EQ(units(0), 5);
+  EXPECT_EQ(units(1), config.testers.units[UnitKind::kBox].units);
+  EXPECT_EQ(units(2), 3);
+  EXPECT_EQ(units(3), 3);
   const std::string text = resolved_yaml(config);
   const Config again = parse_config(text, "again.yaml");
   EXPECT_EQ(again.topology.overrides[0].named, config.topology.overrides[0].named) << text;

@@ -9,7 +9,7 @@
 #include "tests/ringbus/support/timed_machine.h"
 #include "tests/ringbus/time/loose_channel.h"
 
-namespace carousel::ringbus::cycle {
+namespace carousel::ringbus::cycle::parcels_test {
 namespace {
 
 TEST(LinkTime, MovesItsWidthACycle) {
@@ -262,4 +262,4 @@ TEST(DrawnShading, IsThatOfSideWiresWhenItsLinksAreAsLongAndNeverBusy) {
 }
 
 }  // namespace
-}  // namespace carousel::ringbus::cycle
+}  // namespace carousel::ringbus::cycle::parcels_test
