@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdint>
 #include <deque>
+#include <span>
 
+#include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/time/clock.h"
 
@@ -15,12 +17,21 @@ class LinkTime {
  public:
   explicit LinkTime(std::uint64_t bytes_per_cycle) : width_(bytes_per_cycle) {}
 
+  /// What is read over time, at most so often, from now on.
+  enum class Counter : std::uint8_t { kBusy, kBytes, kEnd };
+  void sample(std::size_t most) { samples_ = CounterSamples(most, static_cast<std::size_t>(Counter::kEnd)); }
+  void close(Cycle end) {
+    samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
+  }
+  const CounterSamples& samples() const { return samples_; }
+
   /// The cycles in which the first and the last byte of something leave.
   struct Passage {
     Cycle head = 0, tail = 0;
   };
   /// A parcel of `bytes` may leave at `ready`, not before any that came earlier.
   Passage parcel(std::uint64_t bytes, Cycle ready) {
+    look_at(ready);
     const std::uint64_t begin = std::max(taken_, ready * width_);
     taken_ = begin + std::max<std::uint64_t>(1, bytes);
     bytes_ += bytes;
@@ -30,6 +41,7 @@ class LinkTime {
   }
   /// Likewise for a packet that occupies the link for so many cycles. Returns the cycle in which it begins.
   Cycle packet(Cycle cycles, Cycle ready) {
+    look_at(ready);
     const Cycle begin = std::max(ceil_div(taken_, width_), ready);
     taken_ = (begin + cycles) * width_;
     note(begin * width_, ready);
@@ -44,6 +56,15 @@ class LinkTime {
   const Occupancy& queue() const { return queue_; }
 
  private:
+  /// To be called before anything happens at `now`.
+  void look_at(Cycle now) {
+    if (samples_.due(now)) [[unlikely]]
+      samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
+  }
+  void read(Cycle at, std::span<std::uint64_t> row) const {
+    row[static_cast<std::size_t>(Counter::kBusy)] = busy(at);
+    row[static_cast<std::size_t>(Counter::kBytes)] = bytes_;
+  }
   void note(std::uint64_t begin, Cycle ready) {
     const Cycle first = begin / width_, end = ceil_div(taken_, width_);
     busy_ += end - std::min(end, std::max(first, busy_to_));
@@ -61,6 +82,7 @@ class LinkTime {
   Cycle busy_ = 0, busy_to_ = 0;
   std::deque<Cycle> waiting_;  // when those that wait begin
   Occupancy queue_;
+  CounterSamples samples_;
 };
 
 }  // namespace carousel::ringbus::cycle

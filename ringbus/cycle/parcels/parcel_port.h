@@ -28,7 +28,7 @@ class ParcelPort {
     to_->send(leaves + away_, std::move(parcel));
   }
   /// Null for a link that is shared.
-  const LinkTime* time() const { return time_.get(); }
+  LinkTime* time() { return time_.get(); }
 
  private:
   Channel<Parcel>* to_;

@@ -32,7 +32,6 @@ class Relay final : public Agent {
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override { return ""; }
 
-  const std::vector<ParcelPort>& out() const { return out_; }
   Cycle last_step() const { return last_step_; }
 
  private:

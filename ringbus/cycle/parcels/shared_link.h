@@ -34,7 +34,7 @@ class SharedLink final : public Agent {
   void run(Cycle end) override;
   std::string describe() const override { return ""; }
 
-  const LinkTime& time() const { return time_; }
+  LinkTime& time() { return time_; }
 
  private:
   void step(Cycle now);

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "ringbus/cycle/tile/resource_samples.h"
+#include "ringbus/topology/graph_facts.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -28,25 +29,30 @@ class SeriesWriter {
     for (const auto& memory : machine.memory().memories()) look(memory->samples());
     for (const auto& resource : machine.resources()) look(resource->samples());
     for (const auto& hub : machine.network().hubs()) look(hub->samples());
+    for (std::size_t i = 0; machine.parcels() != nullptr && i < machine.parcels()->plan().links.size(); ++i)
+      look(machine.parcels()->time_of(i).samples());
     out_.unit = "cycles";
     out_.interval = static_cast<double>(interval_);
     out_.samples = ceil_div(end, interval_);
   }
 
   TimeSeries write() {
+    read_links();
     machine_rows();
     for (std::size_t r = 0; r < machine_.resources().size(); ++r) resource_rows(r);
-    std::size_t link = 0;
-    machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
-      const std::string part = fmt::format("link {}", link++);
-      row({part, "busy", "share", Kind::kMean}, sum_of_port(wire, port, PortCounter::kBusy));
-      row({part, "bytes", "bytes", Kind::kSum}, sum_of_port(wire, port, PortCounter::kBytes));
-    });
+    for (std::size_t link = 0; link < links_.size(); ++link) {
+      const std::string part = fmt::format("link {}", link);
+      row({part, "busy", "share", Kind::kMean}, links_[link].busy);
+      row({part, "bytes", "bytes", Kind::kSum}, links_[link].bytes);
+    }
     return std::move(out_);
   }
 
  private:
   using Sums = std::vector<std::uint64_t>;
+  struct LinkSums {
+    Sums busy, bytes;
+  };
 
   void machine_rows() {
     const std::size_t resources = machine_.resources().size();
@@ -72,13 +78,12 @@ class SeriesWriter {
       row({"machine", fmt::format("{} busy", unit.name), "share", Kind::kMean}, all(unit_index(unit.kind)), resources);
     row({"machine", "dispatch busy", "share", Kind::kMean}, all(counter_index(ResourceCounter::kDispatch)), resources);
     Sums busy = zeros(), bytes = zeros();
-    std::size_t links = 0;
-    machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
-      add_port(busy, wire, port, PortCounter::kBusy);
-      add_port(bytes, wire, port, PortCounter::kBytes);
-      ++links;
-    });
-    row({"machine", "links busy", "share", Kind::kMean}, busy, std::max<std::size_t>(1, links));
+    for (const LinkSums& link : links_)
+      for (std::size_t i = 0; i < busy.size(); ++i) {
+        busy[i] += link.busy[i];
+        bytes[i] += link.bytes[i];
+      }
+    row({"machine", "links busy", "share", Kind::kMean}, busy, std::max<std::size_t>(1, links_.size()));
     row({"machine", "bytes on links", "bytes", Kind::kSum}, bytes);
     Sums dram = zeros();
     for (const auto& memory : machine_.memory().memories()) memory->samples().add_to(dram, interval_, 0);
@@ -126,10 +131,23 @@ class SeriesWriter {
       machine_.network().hubs()[wire.from.value - resources]->samples().add_to(sums, interval_,
                                                                                counter_index(counter, port, 0));
   }
-  Sums sum_of_port(const Topology::Wire& wire, std::size_t port, PortCounter counter) const {
-    Sums sums = zeros();
-    add_port(sums, wire, port, counter);
-    return sums;
+  /// The links in the order of the report: those of packets, which others may share, and then those of others alone.
+  void read_links() {
+    machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
+      LinkSums& link = links_.emplace_back(LinkSums{zeros(), zeros()});
+      add_port(link.busy, wire, port, PortCounter::kBusy);
+      add_port(link.bytes, wire, port, PortCounter::kBytes);
+    });
+    if (machine_.parcels() == nullptr) return;
+    const ParcelPlan& plan = machine_.parcels()->plan();
+    for (std::size_t i = 0; i < plan.links.size(); ++i) {
+      const bool alone = plan.links[i].wire == ParcelPlan::kNone;
+      LinkSums& link = alone ? links_.emplace_back(LinkSums{zeros(), zeros()}) : links_[plan.links[i].wire];
+      link.busy = zeros();  // of a link that is shared, its time has all
+      const CounterSamples& samples = machine_.parcels()->time_of(i).samples();
+      samples.add_to(link.busy, interval_, static_cast<std::size_t>(LinkTime::Counter::kBusy));
+      samples.add_to(link.bytes, interval_, static_cast<std::size_t>(LinkTime::Counter::kBytes));
+    }
   }
   /// `parts`: equal parts side by side, whose mean is taken.
   void row(SeriesRow&& row, const Sums& sums, double parts = 1) {
@@ -143,6 +161,7 @@ class SeriesWriter {
 
   const SimulatedMachine& machine_;
   Cycle interval_ = 1;
+  std::vector<LinkSums> links_;
   TimeSeries out_;
 };
 
@@ -150,8 +169,9 @@ class SeriesWriter {
 
 std::size_t series_counters(const TopologyConfig& config) {
   const Topology topology(config);
+  const std::size_t links = config.shape == TopologyShape::kGraph ? draw_whole(config).links.size() : 0;
   return topology.resources() * (kFirstPortCounter + 1) +
-         topology.wires().size() * static_cast<std::size_t>(PortCounter::kEnd) + 32;
+         std::max(topology.wires().size(), links) * static_cast<std::size_t>(PortCounter::kEnd) + 32;
 }
 
 TimeSeries machine_series(const SimulatedMachine& machine) {

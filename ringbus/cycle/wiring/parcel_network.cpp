@@ -49,6 +49,7 @@ void ParcelNetwork::make_links(const Network& network) {
     if (wire == ParcelPlan::kNone) {
       Channel<Parcel>& channel = this->channel(links_, over_links_, {from, to, latency});
       out[link.from].emplace_back(channel, latency, static_cast<std::uint64_t>(link.bytes_per_cycle));
+      times_.push_back(out[link.from].back().time());
       continue;
     }
     const std::uint32_t agent = numbers_.shared_link(shared_.size());
@@ -57,9 +58,9 @@ void ParcelNetwork::make_links(const Network& network) {
     Channel<Parcel>& channel =
         this->channel(links_, over_links_, {agent, to, SharedLink::far_latency(link.latency_cycles)});
     out[link.from].emplace_back(*to_shared_.back(), 1, 0);
-    shared_of_.emplace(i, shared_.size());
     shared_.push_back(std::make_unique<SharedLink>(
         topology_, wire, SharedLink::Ends{&network.near(wire), &network.far(wire), to_shared_.back().get(), &channel}));
+    times_.push_back(&shared_.back()->time());
   }
   for (std::uint32_t node = 0; node < graph.nodes.size(); ++node) {
     std::vector<Channel<Parcel>*> in;
@@ -201,12 +202,12 @@ Cycle ParcelNetwork::quiet_from() const {
   return last;
 }
 
-const LinkTime& ParcelNetwork::time_of(std::size_t link) const {
-  if (const auto shared = shared_of_.find(link); shared != shared_of_.end()) return shared_[shared->second]->time();
-  const Graph::Link& drawn = plan_.drawn(plan_.links[link]);
-  const std::vector<std::uint32_t>& out = routes_.out(drawn.from);
-  const auto port = std::ranges::find(out, static_cast<std::uint32_t>(link)) - out.begin();
-  return *relays_[drawn.from]->out()[static_cast<std::size_t>(port)].time();
+void ParcelNetwork::sample(std::size_t most) {
+  for (LinkTime* time : times_) time->sample(most);
+}
+
+void ParcelNetwork::close(Cycle end) const {
+  for (LinkTime* time : times_) time->close(end);
 }
 
 }  // namespace carousel::ringbus::cycle

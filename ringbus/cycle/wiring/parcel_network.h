@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -46,7 +45,10 @@ class ParcelNetwork {
   /// Nothing has happened on the links since.
   Cycle quiet_from() const;
   /// The use of a link of the plan by its number there.
-  const LinkTime& time_of(std::size_t link) const;
+  const LinkTime& time_of(std::size_t link) const { return *times_[link]; }
+  /// From now on it is read over time, at most so often.
+  void sample(std::size_t most);
+  void close(Cycle end) const;
 
  private:
   static constexpr std::uint32_t kShapeDoor = 0, kRayDoor = 1;  // of a resource
@@ -75,7 +77,7 @@ class ParcelNetwork {
   std::vector<std::unique_ptr<Channel<Parcel>>> to_shared_;  // likewise; null unless packets share it
   std::vector<std::unique_ptr<Relay>> relays_;               // by node of the graph
   std::vector<std::unique_ptr<SharedLink>> shared_;
-  std::map<std::size_t, std::size_t> shared_of_;  // by link of the plan: its place in shared_
+  std::vector<LinkTime*> times_;  // by link of the plan; of relays' ports and of shared_
   std::vector<std::unique_ptr<Channel<NewRays>>> new_rays_;
   std::vector<std::unique_ptr<Channel<CompletedRays>>> completed_;
   std::vector<std::unique_ptr<Channel<FetchRequest>>> requests_;

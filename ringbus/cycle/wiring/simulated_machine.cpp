@@ -139,7 +139,10 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   memory_ = std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
                                            config.engine.clock_mhz, cache_clients, others,
                                            parcels_ ? &askers : nullptr);
-  if (parcels_) parcels_->join(*memory_);
+  if (parcels_) {
+    parcels_->join(*memory_);
+    parcels_->sample(observed.samples);
+  }
   if (observed.memory != nullptr && memory_->memories().size() > 1)
     throw SimulationError(
         fmt::format("the requests to {} memories are no single list; expected one memory", memory_->memories().size()));
@@ -181,6 +184,7 @@ void SimulatedMachine::close(Cycle end) const {
   for (const auto& resource : resources_) resource->close(end);
   for (const auto& hub : network_.hubs()) hub->close(end);
   for (const auto& memory : memory_->memories()) memory->close(end);
+  if (parcels_) parcels_->close(end);
   shading_->close(end);
 }
 
