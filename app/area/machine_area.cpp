@@ -90,10 +90,10 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     parts.declared[i] = {static_cast<double>(caches) * each.size, static_cast<double>(caches) * each.mm2};
   });
   report::AreaOf& wires = parts[AreaPart::kWires];
-  wires.size = 8 * static_cast<double>(c.topology.link.bytes_per_cycle) * out.link_mm *
-               (wire_lengths(topology, c.topology.link.bytes_per_cycle) +
-                drawn.lengths_without_packets(c.topology.link.bytes_per_cycle) +
-                (has_distributor(c) ? 1 : 0));  // the bus to the testers
+  const std::int64_t width = c.topology.link.bytes_per_cycle;
+  wires.size = 8 * static_cast<double>(width) *
+               (wire_lengths(topology, width, out.link_mm) + drawn.lengths_without_packets(width, out.link_mm) +
+                (has_distributor(c) ? out.link_mm : 0));  // the bus to the testers
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
   report::AreaOf& shaders = parts[AreaPart::kShaders];
   shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *

@@ -93,10 +93,10 @@ class Account {
     for (std::size_t i = 0; i < r_.links->size(); ++i) {
       const auto bytes = static_cast<double>((*r_.links)[i].bytes.value_or(0));
       const std::size_t wires = topology.wires().size();
-      const double length =
-          i < wires ? wire_length(topology, topology.wires()[i]) : drawn_.length(others.at(i - wires));
+      const double mm = i < wires ? wire_length(topology, topology.wires()[i], link_mm_)
+                                  : drawn_.length(others.at(i - wires), link_mm_);
       parts_[EnergyPart::kPorts].add(bytes, pj(Cost::kHop));
-      parts_[EnergyPart::kWires].add(bytes * link_mm_ * length, pj(Cost::kWire));
+      parts_[EnergyPart::kWires].add(bytes * mm, pj(Cost::kWire));
     }
   }
 

@@ -84,11 +84,19 @@ std::string graph_facts_text(const TopologyConfig& config) {
   std::string out = fmt::format("graph: {} resources, {} routers, {} links of one way\n", facts.resources,
                                 facts.routers, facts.links);
   if (facts.links == 0) return out;
-  out += fmt::format("ways: {:.4f} cycles and {:.4f} nodes on average, {} cycles at most, from {} to {}\n",
-                     facts.mean_cycles, facts.mean_nodes, facts.longest_cycles, facts.longest_from, facts.longest_to);
-  return out +
-         fmt::format("busiest: {}, on {} of {} ways; a uniform load fills it at {:.4f} flits a resource and cycle\n",
+  out += fmt::format(
+      "ways: {:.4f} cycles and {:.4f} nodes on average, {} cycles at most, from {} to {}; {} links at "
+      "most\n",
+      facts.mean_cycles, facts.mean_nodes, facts.longest_cycles, facts.longest_from, facts.longest_to, facts.diameter);
+  out += fmt::format("busiest: {}, on {} of {} ways; a uniform load fills it at {:.4f} flits a resource and cycle\n",
                      facts.busiest, facts.busiest_pairs, facts.resources * facts.resources, facts.bound);
+  if (facts.resources > 1)
+    out += fmt::format("halves: {} bytes a cycle there and back, {} ({})\n", facts.halves.bytes_per_cycle,
+                       facts.halves.exact ? "the narrowest of all cuts" : "the narrowest cut that a search found",
+                       facts.halves_links);
+  if (facts.wire_mm)
+    out += fmt::format("wires: {:.6g} mm of links, {:.6g} bit mm\n", *facts.wire_mm, facts.wire_bit_mm);
+  return out;
 }
 
 int print_graph(const CheckArguments& arguments) {

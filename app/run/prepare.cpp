@@ -187,12 +187,16 @@ void require_room(const Prepared& p, bool keep_hits) {
   require_fit(need, usable_memory_bytes(), p.located.positions);
 }
 
-/// Refuses a graph whose links can fill up and stop. Of other shapes `topology.flow` alone says whether they can.
+/// Refuses a graph whose links can fill up and stop, and traffic on the lines of a hierarchical network, which is one.
+/// Of other shapes `topology.flow` alone says whether they can.
 void require_flow(const Prepared& p) {
-  if (p.config().topology.shape != TopologyShape::kGraph) return;
+  const bool graph = p.config().topology.shape == TopologyShape::kGraph;
+  if (!graph && p.config().workload.kind != WorkloadConfig::Kind::kTraffic) return;
+  if (!graph && p.config().topology.shape != TopologyShape::kHierarchical) return;
   const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config());
+  const char* key = graph ? "topology.links" : "topology.shape";
   if (verdict.can_deadlock)
-    throw ConfigError({{p.located.positions.find("topology.links"), "topology.links",
+    throw ConfigError({{p.located.positions.find(key), key,
                         fmt::format("{}; expected links without such a circle, or --force", verdict.rule)}});
 }
 

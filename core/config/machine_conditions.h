@@ -120,6 +120,23 @@ inline constexpr Condition kNoDrawnCaches{[](const C& c, const S&) {
                                                    });
                                           },
                                           "caches that are drawn say whom they serve"};
+inline constexpr Condition kUpDown{[](const C& c, const S&) {
+                                     return c.topology.shape == TopologyShape::kGraph &&
+                                            c.topology.routes == Routing::kUpDown;
+                                   },
+                                   "topology.routes is not up_down"};
+inline constexpr Condition kGivenWays{[](const C& c, const S&) {
+                                        return c.topology.shape == TopologyShape::kGraph &&
+                                               c.topology.routes == Routing::kGiven;
+                                      },
+                                      "topology.routes is not given"};
+// Rays wait at resources, whose places are those of dispatch and tests, and take one channel.
+inline constexpr Condition kChannels{
+    [](const C& c, const S&) {
+      return c.workload.kind == Workload::kTraffic &&
+             (c.topology.shape == TopologyShape::kGraph || c.topology.shape == TopologyShape::kHierarchical);
+    },
+    "virtual channels carry synthetic traffic on graphs"};
 inline constexpr Condition kCentral{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kCentral; },
                                     "the topology is not central"};
 inline constexpr Condition kDistributor{[](const C& c, const S&) { return has_distributor(c); },

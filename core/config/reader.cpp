@@ -140,6 +140,21 @@ void Reader::on_field(std::string_view key, GridSize& value, IntRange range, con
   value = read;
 }
 
+void Reader::on_field(std::string_view key, GraphPoint& value, RealRange range, const char* unit, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kSeq || visit.node->items.size() != 2)
+    return wrong(*visit.node, "a list of x and y");
+  GraphPoint read{.given = true};
+  double* axes[] = {&read.x, &read.y};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto number = real_of<double>(visit.node->items[i], range);
+    if (!number) return wrong(visit.node->items[i], expected_real(range, unit));
+    *axes[i] = *number;
+  }
+  value = read;
+}
+
 void Reader::on_field(std::string_view key, bool& value, const char*, const char*) {
   const Visit visit(*this, key);
   if (!visit.node) return;

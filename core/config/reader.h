@@ -37,6 +37,7 @@ class Reader : public RowVisitor<Reader> {
   void on_field(std::string_view key, double& value, RealRange range, const char* unit, const char*);
   void on_field(std::string_view key, Vec3& value, RealRange range, const char* unit, const char*);
   void on_field(std::string_view key, GridSize& value, IntRange range, const char* unit, const char*);
+  void on_field(std::string_view key, GraphPoint& value, RealRange range, const char* unit, const char*);
   void on_field(std::string_view key, bool& value, const char*, const char*);
   void on_field(std::string_view key, std::string& value, const char*, const char*);
   void on_field_or_auto(std::string_view key, std::optional<std::int64_t>& value, IntRange range, const char* unit,

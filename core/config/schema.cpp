@@ -56,6 +56,9 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
   void on_field(std::string_view key, GridSize&, IntRange range, const char* unit, const char* meaning) {
     put(key, {{"type", "array"}, {"items", integer(range)}, {"minItems", 2}, {"maxItems", 2}}, unit, meaning);
   }
+  void on_field(std::string_view key, GraphPoint&, RealRange range, const char* unit, const char* meaning) {
+    put(key, {{"type", "array"}, {"items", real(range)}, {"minItems", 2}, {"maxItems", 2}}, unit, meaning);
+  }
   void on_field(std::string_view key, bool& value, const char* unit, const char* meaning) {
     put(key, {{"type", "boolean"}, {"default", value}}, unit, meaning);
   }

@@ -43,6 +43,9 @@ class JsonWriter : public RowVisitor<JsonWriter> {
   void on_field(std::string_view key, GridSize& value, IntRange, const char*, const char*) {
     if (value.any()) put(key, {value.columns, value.rows});
   }
+  void on_field(std::string_view key, GraphPoint& value, RealRange, const char*, const char*) {
+    if (value.given) put(key, {value.x, value.y});
+  }
   void on_field(std::string_view key, bool& value, const char*, const char*) { put(key, value); }
   void on_field(std::string_view key, std::string& value, const char*, const char*) {
     if (!value.empty()) put(key, value);

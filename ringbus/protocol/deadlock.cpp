@@ -4,6 +4,7 @@
 
 #include "ringbus/resource/storage_rule.h"
 #include "ringbus/resource/traversal/make_traversal.h"
+#include "ringbus/topology/drawn_shape.h"
 #include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/topology.h"
 
@@ -16,6 +17,8 @@ DeadlockVerdict deadlock_verdict(const TopologyConfig& config) {
 DeadlockVerdict deadlock_verdict(const Config& config) {
   const bool traffic = config.workload.kind == WorkloadConfig::Kind::kTraffic;
   if (traffic && config.topology.shape == TopologyShape::kGraph) return traffic_verdict(config.topology);
+  if (traffic && config.topology.shape == TopologyShape::kHierarchical && config.topology.resources > 1)
+    return traffic_verdict(draw_shape(config.topology).config);
   return deadlock_verdict(config.topology);
 }
 

@@ -1,14 +1,18 @@
 #include "core/config/graph/graph.h"
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include "ringbus/topology/dependencies.h"
+#include "ringbus/topology/graph/channel_classes.h"
+#include "ringbus/topology/graph/dependencies.h"
+#include "ringbus/topology/graph/routes.h"
 #include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/rounds.h"
-#include "ringbus/topology/routes.h"
 #include "ringbus/topology/shapes.h"
 
 namespace carousel::ringbus {
@@ -36,6 +40,30 @@ std::vector<TopologyPlan::Exit> exits_of(const Graph& graph, const Routes& route
       exits[at * std::size_t{graph.resources} + to] = {ports[i], through};
     }
   return exits;
+}
+
+/// A round from the first resource to the nearest that is left, and so on, by the cycles of the way; of equally near
+/// ones, the first.
+std::vector<ResourceId> nearest_round(const Graph& graph, const Routes& routes) {
+  std::vector<ResourceId> round(graph.resources);
+  std::vector<bool> left(graph.resources, true);
+  std::uint32_t at = 0;
+  for (std::uint32_t i = 1; i < graph.resources; ++i) {
+    left[at] = false;
+    std::pair best{std::numeric_limits<std::int64_t>::max(), 0u};
+    for (std::uint32_t to = 0; to < graph.resources; ++to) {
+      if (!left[to]) continue;
+      std::int64_t cycles = 0;
+      routes.for_each_link(at, to, [&](std::uint32_t link) {
+        cycles += graph.links[link].latency_cycles + graph.nodes[graph.links[link].from].drawn->latency_cycles;
+      });
+      best = std::min(best, std::pair{cycles, to});
+    }
+    round[at] = ResourceId(best.second);
+    at = best.second;
+  }
+  round[at] = ResourceId(0);
+  return round;
 }
 
 /// Links between two resources, there and back, that hold no more than `enough` packets: the smallest circles there
@@ -97,7 +125,8 @@ class VisitJudge {
     std::vector<bool> bounded;
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i)
       bounded.push_back(i < graph_.resources ? bounded_resources : graph_.nodes[i].drawn->buffers.has_value());
-    return visit_dependencies(graph_, routes_, config_.visit == Visit::kAll, bounded)
+    const std::span<const ResourceId> round(plan_.successors[0]);
+    return visit_dependencies(graph_, routes_, config_.visit == Visit::kAll ? round : round.first(0), bounded)
         .smallest_circle(places_, on_the_way_);
   }
   std::uint64_t held(const std::vector<std::uint32_t>& circle) const {
@@ -140,10 +169,26 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
   const Graph graph = draw_checked(config);
   const Routes routes(graph);
   TopologyPlan plan;
-  plan.successors = {round_in_steps(config, 1)};
-  for (const Graph::Link& link : graph.links)
-    plan.wires.push_back({ResourceId(link.from), ResourceId(link.to), 0, link.latency_cycles,
-                          graph.nodes[link.from].drawn->latency_cycles, link.depth, link.bytes_per_cycle});
+  plan.successors = {config.tour == Tour::kNearest ? nearest_round(graph, routes) : round_in_steps(config, 1)};
+  for (const Graph::Link& link : graph.links) {
+    const Graph::Node &from = graph.nodes[link.from], &to = graph.nodes[link.to];
+    TopologyPlan::Wire& wire = plan.wires.emplace_back();
+    wire.from = ResourceId(link.from);
+    wire.to = ResourceId(link.to);
+    wire.latency_cycles = link.latency_cycles;
+    wire.node_cycles = from.drawn->latency_cycles;
+    wire.depth = link.depth;
+    wire.bytes_per_cycle = link.bytes_per_cycle;
+    wire.credit_cycles = to.drawn->credit_cycles;
+    if (from.at.given && to.at.given) wire.mm = link_mm(graph, link);
+  }
+  plan.flits_apart =
+      std::ranges::all_of(
+          graph.links, [&](const Graph::Link& link) { return link.bytes_per_cycle == config.link.bytes_per_cycle; }) &&
+      std::ranges::all_of(graph.nodes, [](const Graph::Node& node) { return node.drawn->forward == Forward::kHead; });
+  plan.channels = plan_channels(config, graph, routes);
+  for (const Graph::Node& node : graph.nodes)
+    plan.claim_cycles.push_back(static_cast<std::uint32_t>(node.drawn->claim_cycles));
   plan.routed = true;
   plan.exits = exits_of(graph, routes);
   for (std::size_t i = graph.resources; i < graph.nodes.size(); ++i) {

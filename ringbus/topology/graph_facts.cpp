@@ -1,13 +1,15 @@
 #include "ringbus/topology/graph_facts.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 #include <fmt/format.h>
 
 #include "core/system/error.h"
-#include "ringbus/topology/dependencies.h"
-#include "ringbus/topology/routes.h"
+#include "ringbus/topology/graph/channel_classes.h"
+#include "ringbus/topology/graph/dependencies.h"
+#include "ringbus/topology/graph/routes.h"
 
 namespace carousel::ringbus {
 
@@ -23,6 +25,11 @@ Graph draw_whole(const TopologyConfig& config) {
 
 Graph draw_checked(const TopologyConfig& config) {
   return draw_whole(config).only(Carried::kPackets);
+}
+
+double link_mm(const Graph& graph, const Graph::Link& link) {
+  const GraphPoint &from = graph.nodes[link.from].at, &to = graph.nodes[link.to].at;
+  return std::abs(from.x - to.x) + std::abs(from.y - to.y);
 }
 
 std::string circle_text(const Graph& graph, const std::vector<std::uint32_t>& circle) {
@@ -46,12 +53,15 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   for (std::uint32_t from = 0; from < graph.resources; ++from)
     for (std::uint32_t to = 0; to < graph.resources; ++to) {
       std::int64_t way = 0;
+      std::uint64_t links = 0;
       ++nodes;
       routes.for_each_link(from, to, [&](std::uint32_t link) {
         way += graph.nodes[graph.links[link].from].drawn->latency_cycles + graph.links[link].latency_cycles;
         ++pairs[link];
         ++nodes;
+        ++links;
       });
+      facts.diameter = std::max(facts.diameter, links);
       cycles += way;
       if (way <= facts.longest_cycles) continue;
       facts.longest_cycles = way;
@@ -62,6 +72,16 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   facts.mean_nodes = static_cast<double>(nodes) / all;
   facts.mean_cycles = static_cast<double>(cycles) / all;
   if (graph.links.empty()) return facts;
+  facts.halves = narrowest_halves(graph);
+  facts.halves_links = circle_text(graph, facts.halves.links);
+  if (std::ranges::all_of(graph.nodes, [](const Graph::Node& node) { return node.at.given; })) {
+    facts.wire_mm = 0;
+    for (const Graph::Link& link : graph.links) {
+      const double mm = link_mm(graph, link);
+      *facts.wire_mm += mm;
+      facts.wire_bit_mm += 8 * static_cast<double>(link.bytes_per_cycle) * mm;
+    }
+  }
   std::uint32_t busiest = 0;
   const auto load = [&](std::uint32_t link) {
     return static_cast<double>(pairs[link]) / static_cast<double>(graph.links[link].bytes_per_cycle);
@@ -80,15 +100,43 @@ GraphFacts graph_facts(const TopologyConfig& config) {
 DeadlockVerdict traffic_verdict(const TopologyConfig& config) {
   const Graph graph = draw_checked(config);
   const Routes routes(graph);
-  const std::vector<std::uint64_t> places(graph.links.size(), 1);
-  const std::vector<std::uint32_t> circle = traffic_dependencies(graph, routes).smallest_circle(places, 2);
+  const std::vector<std::uint32_t> circle =
+      traffic_dependencies(graph, routes).smallest_circle(std::vector<std::uint64_t>(graph.links.size(), 1), 2);
   if (circle.empty())
-    return {false,
-            "no circle: the links of all ways can be put in an order in which every packet takes them, and the "
-            "sink takes every packet in"};
-  return {true, fmt::format("a circle of {} links wait for one another when they are full ({}); on a graph no rule "
-                            "keeps synthetic traffic from that",
-                            circle.size(), circle_text(graph, circle))};
+    return {false, fmt::format("{}: the links of all ways can be put in an order in which every packet takes them, and "
+                               "the sink takes every packet in",
+                               config.routes == Routing::kUpDown ? "up_down" : "no circle")};
+  const std::string full = fmt::format("a circle of {} links wait for one another when they are full ({})",
+                                       circle.size(), circle_text(graph, circle));
+  const ChannelPlan plan = plan_channels(config, graph, routes);
+  if (plan.rule == ChannelRule::kAny)
+    return {true, full +
+                      "; on a graph no rule keeps synthetic traffic from that, but virtual channels under "
+                      "topology.channels: dateline would"};
+  const ChannelDependencies channels = channel_dependencies(graph, routes, plan);
+  const std::vector<std::uint32_t> left =
+      channels.waits.smallest_circle(std::vector<std::uint64_t>(channels.link_of.size(), 1), 2);
+  const std::string rule = plan.rule == ChannelRule::kHops ? "links passed" : fmt::format("datelines passed ({})", [&] {
+    std::vector<std::uint32_t> lines;
+    for (std::uint32_t link = 0; link < graph.links.size(); ++link)
+      if (plan.datelines[link]) lines.push_back(link);
+    return circle_text(graph, lines);
+  }());
+  if (left.empty())
+    return {false, fmt::format("virtual channels: {}, but each packet is on a channel of the class of the {}, and of "
+                               "the {} classes none waits for one before it",
+                               full, rule, plan.classes)};
+  std::uint32_t fewest = channels.link_of[left.front()];
+  for (const std::uint32_t one : left)
+    if (plan.channels[channels.link_of[one]] < plan.channels[fewest]) fewest = channels.link_of[one];
+  if (plan.channels[fewest] >= plan.classes)
+    return {true, fmt::format("{}, and no dateline breaks it: {}", full, [&] {
+              std::vector<std::uint32_t> links;
+              for (const std::uint32_t one : left) links.push_back(channels.link_of[one]);
+              return circle_text(graph, links);
+            }())};
+  return {true, fmt::format("{}; the ways need channels of {} classes by {}, and {} has {}", full, plan.classes, rule,
+                            graph.name_of(graph.links[fewest]), plan.channels[fewest])};
 }
 
 }  // namespace carousel::ringbus

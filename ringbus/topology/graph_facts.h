@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "core/config/graph/graph.h"
+#include "ringbus/topology/graph/cuts.h"
 #include "ringbus/topology/plan.h"
 
 namespace carousel::ringbus {
@@ -16,7 +18,10 @@ config::Graph draw_whole(const TopologyConfig& config);
 /// Likewise, with the links alone that carry packets.
 config::Graph draw_checked(const TopologyConfig& config);
 
-/// A few links of a circle by name.
+/// The length of a link between two nodes with places, along the axes.
+double link_mm(const config::Graph& graph, const config::Graph::Link& link);
+
+/// A few links by name.
 std::string circle_text(const config::Graph& graph, const std::vector<std::uint32_t>& circle);
 
 /// The ways of a graph between all pairs of resources, each with itself included: what a uniform load would meet.
@@ -26,10 +31,15 @@ struct GraphFacts {
   double mean_cycles = 0;  ///< that links and the nodes before them take
   std::string longest_from, longest_to;
   std::int64_t longest_cycles = 0;
+  std::uint64_t diameter = 0;       ///< most links on a way
   std::string busiest;              ///< the link that most ways use for its width
   std::uint64_t busiest_pairs = 0;  ///< ways over it
   /// Load at which the busiest link would be full: flits of the width of topology.link for each resource and cycle.
   double bound = 0;
+  Cut halves;                     ///< the narrowest cut
+  std::string halves_links;       ///< a few of its links by name
+  std::optional<double> wire_mm;  ///< of all links together, where all nodes have places
+  double wire_bit_mm = 0;         ///< likewise, each times its bits
 };
 GraphFacts graph_facts(const TopologyConfig& config);
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types/ids.h"
+#include "ringbus/topology/graph/channel_plan.h"
 
 namespace carousel::ringbus {
 
@@ -29,6 +30,8 @@ struct TopologyPlan {
     std::int64_t node_cycles = 0;      ///< that its first node takes before
     std::int64_t depth = 0;            ///< packets; 0: as topology.link says, also below
     std::int64_t bytes_per_cycle = 0;  ///< width
+    std::int64_t credit_cycles = 0;    ///< that its last node takes to tell of a free place, besides the latency
+    double mm = -1;                    ///< length along the axes of the die; negative: not known
   };
 
   /// A node that is no resource.
@@ -68,6 +71,10 @@ struct TopologyPlan {
   /// Packets of its own that a resource may have under way in each direction.
   std::uint32_t packets_in_flight = 0;
   DeadlockVerdict verdict;
+  /// Flits of a packet need not stay together: links are of one width, and no node stores packets whole.
+  bool flits_apart = false;
+  ChannelPlan channels;                     ///< only where packets are routed
+  std::vector<std::uint32_t> claim_cycles;  ///< by node, as the key of the graph's nodes; likewise
   /// By direction of a packet: the direction in which the acknowledgement of its delivery travels back to its source.
   /// Only where traffic runs and packets are not sent directly.
   std::vector<std::uint16_t> ack_directions;

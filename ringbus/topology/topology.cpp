@@ -20,7 +20,7 @@ Topology::Topology(const TopologyConfig& config)
   for (std::uint32_t g = 0; g < plan_.groups.size(); ++g)
     group_of_.insert(group_of_.end(), plan_.groups[g].last.value - plan_.groups[g].first.value + 1, g);
   number_ports();
-  if (properties_.carries_traffic && !plan_.routed) number_positions();
+  if (properties_.carries_traffic && !plan_.routed && plan_.hubs.empty()) number_positions();
 }
 
 void Topology::number_ports() {

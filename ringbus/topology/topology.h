@@ -55,6 +55,12 @@ class Topology {
   TopologyPlan::Exit exit(ResourceId node, ResourceId stop) const {
     return plan_.exits[node.value * std::size_t{resources_} + stop.value];
   }
+  /// The virtual channels of links, under synthetic traffic; only where packets are routed.
+  const ChannelPlan& channels() const { return plan_.channels; }
+  /// Flits of a packet go from node to node one by one; likewise.
+  bool flits_apart() const { return plan_.flits_apart; }
+  /// The time in which the first packet of a queue claims a channel; likewise.
+  std::uint32_t claim_cycles(ResourceId node) const { return plan_.claim_cycles[node.value]; }
   /// No link waits for another, and no rule has to keep them from filling up.
   bool room_for_all() const { return plan_.room_for_all; }
   /// Egress places of a hub for each port; 0: for all packets there are.

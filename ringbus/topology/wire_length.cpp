@@ -30,7 +30,10 @@ double place_distance(std::uint32_t resources, std::uint32_t from, std::uint32_t
          std::abs(static_cast<double>(from / width) - static_cast<double>(to / width));
 }
 
-double wire_length(const Topology& topology, const Topology::Wire& wire) {
+namespace {
+
+/// In links between neighbours.
+double links_long(const Topology& topology, const Topology::Wire& wire) {
   const auto resources = static_cast<std::uint32_t>(topology.resources());
   if (topology.broadcasts()) return wire.to.value >= resources ? static_cast<double>(resources) : 0.0;
   const auto place = [&](std::uint32_t node) {
@@ -40,12 +43,18 @@ double wire_length(const Topology& topology, const Topology::Wire& wire) {
   return place_distance(resources, place(wire.from.value), place(wire.to.value));
 }
 
-double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle) {
-  if (topology.broadcasts()) return static_cast<double>(topology.resources());
+}  // namespace
+
+double wire_length(const Topology& topology, const Topology::Wire& wire, double link_mm) {
+  return wire.mm >= 0 ? wire.mm : link_mm * links_long(topology, wire);
+}
+
+double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle, double link_mm) {
+  if (topology.broadcasts()) return link_mm * static_cast<double>(topology.resources());
   double sum = 0;
   for (const Topology::Wire& wire : topology.wires())
-    sum +=
-        wire_length(topology, wire) * static_cast<double>(wire.bytes_per_cycle) / static_cast<double>(bytes_per_cycle);
+    sum += wire_length(topology, wire, link_mm) * static_cast<double>(wire.bytes_per_cycle) /
+           static_cast<double>(bytes_per_cycle);
   return sum;
 }
 

@@ -40,6 +40,48 @@ inline constexpr auto kEnumNames<Forward> = [] {
   return names<Forward>({{kHead, "head"}, {kWhole, "whole"}});
 }();
 
+/// A place on the die, or a distance; none by default.
+struct GraphPoint {
+  double x = 0, y = 0;
+  bool given = false;
+
+  friend bool operator==(const GraphPoint&, const GraphPoint&) = default;
+};
+
+/// The rule by which ways through a graph are found.
+enum class Routing { kShortest, kUpDown, kGiven };
+template <>
+inline constexpr auto kEnumNames<Routing> = [] {
+  using enum Routing;
+  return names<Routing>({{kShortest, "shortest"}, {kUpDown, "up_down"}, {kGiven, "given"}});
+}();
+
+/// The order in which a packet visits the owners of its rays.
+enum class Tour { kNames, kNearest };
+template <>
+inline constexpr auto kEnumNames<Tour> = [] {
+  using enum Tour;
+  return names<Tour>({{kNames, "names"}, {kNearest, "nearest"}});
+}();
+
+/// The rule by which a packet takes one of a link's virtual channels.
+enum class ChannelRule { kAny, kDateline, kHops };
+template <>
+inline constexpr auto kEnumNames<ChannelRule> = [] {
+  using enum ChannelRule;
+  return names<ChannelRule>({{kAny, "any"}, {kDateline, "dateline"}, {kHops, "hops"}});
+}();
+
+/// A part of the ways that are given: a whole way, or the next node for some nodes and destinations.
+struct GraphWay {
+  static constexpr std::string_view kRequired = "";
+  static constexpr std::string_view kRowPath = "";
+
+  std::string along, at, to, next;
+
+  friend bool operator==(const GraphWay&, const GraphWay&) = default;
+};
+
 /// A node of the graph, or a group of equal ones.
 struct GraphNode {
   static constexpr std::string_view kRequired = "name";
@@ -53,6 +95,9 @@ struct GraphNode {
   Forward forward = Forward::kHead;
   std::string serves;  ///< empty: all resources
   std::optional<std::int64_t> interleave_bytes;
+  std::int64_t credit_cycles = 0, claim_cycles = 0;
+  GraphPoint at, step;
+  std::optional<std::int64_t> columns;
 
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
 };
@@ -72,14 +117,25 @@ struct GraphLink {
 
   std::string from, to, all_to, ring, line, of;
   GridSize mesh;
-  bool both = false;
-  std::optional<std::int64_t> latency_cycles, bytes_per_cycle, depth;
+  bool both = false, dateline = false;
+  std::optional<std::int64_t> latency_cycles, bytes_per_cycle, depth, virtual_channels;
   std::vector<Carried> carries{Carried::kPackets};
 
   friend bool operator==(const GraphLink&, const GraphLink&) = default;
 };
 
 namespace config {
+
+inline constexpr IntRange kChannels{1, 64};
+inline constexpr RealRange kDiePlace{-1000, 1000};
+
+template <class V>
+void describe(V& v, GraphWay& c) {
+  v.field("along", c.along, "", "The nodes of a way in order, the last of them its destination.");
+  v.field("at", c.at, "", "In place of a way: nodes at which a packet is.");
+  v.field("to", c.to, "", "Its destinations, which are resources.");
+  v.field("next", c.next, "", "The node to which it goes on, by a link.");
+}
 
 template <class V>
 void describe(V& v, GraphNode& c) {
@@ -100,6 +156,15 @@ void describe(V& v, GraphNode& c) {
           "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn.");
   v.field_or_auto("interleave_bytes", c.interleave_bytes, IntRange{16, 1 << 20}, "bytes",
                   "The bytes that a cache of a group, or a memory, holds before the next one's turn; auto is a line.");
+  v.field("credit_cycles", c.credit_cycles, IntRange{0, 1'000'000}, "cycles",
+          "The time that a free place of the node takes to be told on, besides the link's latency.");
+  v.field("claim_cycles", c.claim_cycles, IntRange{0, 1'000'000}, "cycles",
+          "The part of latency_cycles in which the first packet of a queue claims a channel of its next link, under "
+          "synthetic traffic. It begins when the packet before it has left.");
+  v.field("at", c.at, kDiePlace, "mm", "The place of the node on the die, x and y; of a group, that of the first.");
+  v.field("step", c.step, kDiePlace, "mm", "From a node of a group to the next in its row and in its column.");
+  v.field_or_auto("columns", c.columns, IntRange{1, kMaxResources}, "nodes",
+                  "The nodes in a row of a group that has places; auto is all of them.");
 }
 
 template <class V>
@@ -120,11 +185,17 @@ void describe(V& v, GraphLink& c) {
                   "The width of the link; auto is that of topology.link.")
       .relax("link_bandwidth", Better::kTwice);
   v.field_or_auto("depth", c.depth, IntRange{1, 65536}, "packets",
-                  "The number of packets that the link holds; auto is that of topology.link.")
+                  "The number of packets that the link, or each of its virtual channels, holds; auto is that of "
+                  "topology.link.")
       .relax("packets_in_flight", Better::kTwice);
   v.choices("carries", c.carries,
             "What travels over the link: packets; shapes, which are requests to caches and memory with all that they "
             "read and write; rays from ray control and back to it. What no link carries has wires of its own.");
+  v.field_or_auto("virtual_channels", c.virtual_channels, kChannels, "channels",
+                  "The queues that share the link; auto is those of topology.link.");
+  v.field("dateline", c.dateline, "",
+          "Under topology.channels: dateline, a packet that goes on by this link takes a channel of the next class. If "
+          "no link says so, they are chosen so that they break every circle.");
 }
 
 }  // namespace config

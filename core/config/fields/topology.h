@@ -54,11 +54,11 @@ constexpr ShapeProperties properties_of(TopologyShape shape) {
     case kBidirectional:
     case kMultiRing:
     case kPointToPoint:
+    case kHierarchical:
     case kGraph:
       return {.carries_traffic = true};
     case kIndependent:
       return {.has_packets = false};
-    case kHierarchical:
     case kBus:
     case kCentral:
       break;
@@ -92,6 +92,7 @@ struct LinkConfig {
   std::int64_t depth = 16;
   std::int64_t latency_cycles = 4;
   std::int64_t bytes_per_cycle = 32;
+  std::int64_t virtual_channels = 1;
 };
 
 /// What is different in one resource, or in nodes of a graph.
@@ -122,6 +123,11 @@ struct TopologyConfig {
   std::vector<ResourceOverride> overrides;
   std::vector<GraphNode> nodes;  ///< of a graph
   std::vector<GraphLink> links;  ///< likewise
+  Routing routes = Routing::kShortest;
+  std::string root;
+  std::vector<GraphWay> ways;
+  Tour tour = Tour::kNames;
+  ChannelRule channels = ChannelRule::kAny;
 };
 
 /// The testers of a resource: its own, or those of the whole machine.
@@ -151,6 +157,8 @@ void describe(V& v, LinkConfig& c) {
       .relax("link_latency", Better::kHalf);
   v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle", "The width of a link.")
       .relax("link_bandwidth", Better::kTwice);
+  v.field("virtual_channels", c.virtual_channels, kChannels, "channels",
+          "The queues of `depth` places that share a link of a graph, under synthetic traffic.");
 }
 
 template <class V>
@@ -186,6 +194,17 @@ void describe(V& v, TopologyConfig& c) {
   v.list("overrides", c.overrides, "Resources that differ from the rest.");
   v.list("nodes", c.nodes, "The nodes of a graph. Its resources are numbered in this order.");
   v.list("links", c.links, "The links of a graph, one by one or by pattern.");
+  v.choice("routes", c.routes,
+           "The ways through a graph: the shortest by the latency of links; up_down, which first go up a tree and then "
+           "down; or given, and the shortest where `ways` say nothing.");
+  v.field("root", c.root, "", "The node at the top for up_down; without it, the one that is nearest to all others.");
+  v.list("ways", c.ways, "The ways that are given.");
+  v.choice("tour", c.tour,
+           "The order in which a packet visits resources of a graph: that of their names in `nodes`, or from each to "
+           "the nearest that is left, the first at the beginning.");
+  v.choice("channels", c.channels,
+           "The virtual channel that a packet takes: any; those of a class that counts the datelines it has passed; "
+           "or those of a class that counts its links.");
 }
 
 }  // namespace config

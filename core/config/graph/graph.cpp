@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "core/config/graph/routes.h"
 
 namespace carousel::config {
 
@@ -35,6 +38,10 @@ class Drawing {
       return {};
     }
     for (entry_ = 0; entry_ < config_.links.size(); ++entry_) add_links(config_.links[entry_]);
+    graph_.routing = config_.routes;
+    if (graph_.routing == Routing::kUpDown && !config_.root.empty()) find_root();
+    if (graph_.routing == Routing::kGiven)
+      for (entry_ = 0; entry_ < config_.ways.size(); ++entry_) add_way(config_.ways[entry_]);
     return std::move(graph_);
   }
 
@@ -59,8 +66,79 @@ class Drawing {
         continue;
       }
       for (std::int64_t n = 0; n < node.count.value_or(1); ++n)
-        graph_.nodes.push_back({node.count ? fmt::format("{}[{}]", node.name, n) : node.name, &node, i});
+        graph_.nodes.push_back(
+            {node.count ? fmt::format("{}[{}]", node.name, n) : node.name, &node, i, place_of(node, n)});
     }
+  }
+
+  static GraphPoint place_of(const GraphNode& node, std::int64_t n) {
+    const std::int64_t columns = node.columns.value_or(node.count.value_or(1));
+    GraphPoint at = node.at;
+    at.x += node.step.x * static_cast<double>(n % columns);
+    at.y += node.step.y * static_cast<double>(n / columns);
+    return at;
+  }
+
+  void find_root() {
+    std::string error;
+    const Nodes nodes = graph_.names.find(config_.root, error);
+    if (nodes.size() == 1)
+      graph_.root = nodes[0];
+    else
+      issue("topology.root",
+            nodes.empty() ? std::move(error)
+                          : fmt::format("expected one node, found {}, which are {}", config_.root, nodes.size()));
+  }
+
+  void way_issue(std::string_view key, std::string message) {
+    issue(fmt::format("topology.ways.{}{}{}", entry_, key.empty() ? "" : ".", key), std::move(message));
+  }
+  Nodes find_on_way(std::string_view key, const std::string& pattern) {
+    std::string error;
+    Nodes nodes = graph_.names.find(pattern, error);
+    if (nodes.empty()) way_issue(key, std::move(error));
+    return nodes;
+  }
+
+  void add_way(const GraphWay& way) {
+    const bool table = !way.at.empty() || !way.to.empty() || !way.next.empty();
+    if (way.along.empty() != table || (table && (way.at.empty() || way.to.empty() || way.next.empty())))
+      return way_issue("", "expected along alone, or at, to and next");
+    if (!table) {
+      const Nodes nodes = find_on_way("along", way.along);
+      if (nodes.empty()) return;
+      if (nodes.size() < 2) return way_issue("along", "expected two nodes at least, found one");
+      for (std::size_t i = 0; i + 1 < nodes.size(); ++i) add_hop("along", nodes[i], nodes.back(), nodes[i + 1]);
+      return;
+    }
+    const Nodes at = find_on_way("at", way.at), to = find_on_way("to", way.to), next = find_on_way("next", way.next);
+    if (next.size() > 1)
+      return way_issue("next", fmt::format("expected one node, found {}, which are {}", way.next, next.size()));
+    if (next.empty()) return;
+    for (const std::uint32_t a : at)
+      for (const std::uint32_t b : to)
+        if (a != b) add_hop("next", a, b, next[0]);
+  }
+
+  void add_hop(std::string_view key, std::uint32_t at, std::uint32_t to, std::uint32_t next) {
+    const auto name = [&](std::uint32_t node) -> const std::string& { return graph_.nodes[node].name; };
+    if (to >= graph_.resources)
+      return way_issue(key == "next" ? "to" : key,
+                       fmt::format("a way ends at a resource, and {} is none", name(to)));
+    const auto link =
+        std::ranges::find_if(graph_.links, [&](const Graph::Link& one) {
+          return one.from == at && one.to == next && one.carries_any({Carried::kPackets});
+        });
+    if (link == graph_.links.end())
+      return way_issue(key, fmt::format("expected nodes with a link between them, found {} and {}, which have none",
+                                        name(at), name(next)));
+    const auto number = static_cast<std::uint32_t>(link - graph_.links.begin());
+    const auto [known, added] = hops_.emplace(std::pair{at, to}, graph_.hops.size());
+    if (added) return graph_.hops.push_back({at, to, number, entry_});
+    const Graph::Hop& first = graph_.hops[known->second];
+    if (first.link != number)
+      way_issue(key, fmt::format("topology.ways.{} sends packets at {} for {} on to {}; expected the same, found {}",
+                                 first.entry, name(at), name(to), name(graph_.links[first.link].to), name(next)));
   }
 
   Nodes find(std::string_view key, const std::string& pattern) {
@@ -158,8 +236,8 @@ class Drawing {
                                         name(from), name(to), known->second));
     const LinkConfig& all = config_.link;
     graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
-                            link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth), entry_,
-                            link.carries});
+                            link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
+                            link.virtual_channels.value_or(all.virtual_channels), entry_, link.dateline, link.carries});
     std::ranges::sort(graph_.links.back().carries);
   }
 
@@ -167,24 +245,33 @@ class Drawing {
   std::vector<GraphIssue>& issues_;
   Graph graph_;
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> entries_;  // by the link's nodes
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> hops_;     // by node and destination
   std::size_t entry_ = 0;
 };
 
-/// The nodes to which ways lead from `start`.
-std::vector<bool> reached(const Graph& graph, const std::vector<Nodes>& next, std::uint32_t start) {
-  std::vector<bool> reached(graph.nodes.size());
-  Nodes open{start};
-  reached[start] = true;
-  while (!open.empty()) {
-    const std::uint32_t at = open.back();
-    open.pop_back();
-    for (const std::uint32_t to : next[at])
-      if (!reached[to]) {
-        reached[to] = true;
-        open.push_back(to);
-      }
+/// What is wrong with the way from one resource to another, if it is never reached.
+std::optional<GraphIssue> fault_of(const Graph& graph, const Routes& routes, std::uint32_t from, std::uint32_t to) {
+  std::uint32_t at = from;
+  for (std::size_t links = 0; at != to; ++links) {
+    const std::uint32_t link = routes.link(at, to);
+    if (link == Routes::kNone) {
+      const std::string_view rule = graph.routing == Routing::kUpDown ? " that goes up and then down" : "";
+      return GraphIssue{"topology.links", fmt::format("there is no way{} from {} to {}; expected links that lead there",
+                                                      rule, graph.nodes[from].name, graph.nodes[to].name)};
+    }
+    at = graph.links[link].to;
+    if (links < graph.nodes.size()) continue;
+    // It goes round: what is given sends it there.
+    const auto given = std::ranges::find_if(graph.hops, [&](const Graph::Hop& hop) {
+      return hop.to == to && hop.at == at && hop.link == routes.link(at, to);
+    });
+    if (given != graph.hops.end())
+      return GraphIssue{fmt::format("topology.ways.{}", given->entry),
+                        fmt::format("a packet from {0} for {1} never comes there: it goes round past {2}; expected a "
+                                    "way that ends",
+                                    graph.nodes[from].name, graph.nodes[to].name, graph.nodes[at].name)};
   }
-  return reached;
+  return std::nullopt;
 }
 
 }  // namespace
@@ -202,7 +289,22 @@ std::vector<std::uint32_t> Graph::of_kind(GraphNodeKind kind) const {
 
 Graph Graph::only(Carried what) const {
   Graph out = *this;
-  std::erase_if(out.links, [&](const Link& link) { return !link.carries_any({what}); });
+  out.links.clear();
+  out.hops.clear();
+  std::vector<std::uint32_t> numbers(links.size());
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (!links[i].carries_any({what})) continue;
+    numbers[i] = static_cast<std::uint32_t>(out.links.size());
+    out.links.push_back(links[i]);
+  }
+  if (what == Carried::kPackets) {
+    for (Hop hop : hops) {
+      hop.link = numbers[hop.link];
+      out.hops.push_back(hop);
+    }
+  } else {
+    out.routing = Routing::kShortest;
+  }
   return out;
 }
 
@@ -251,15 +353,15 @@ void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
                       fmt::format("{} has no link; expected one to it and one from it", graph.nodes[i].name)});
   }
   if (!all) return;  // the ways that are missing are those
-  const Nodes resources = graph.of_kind(GraphNodeKind::kResource);
-  const std::vector<std::vector<bool>> ways = ways_of(graph.only(Carried::kPackets), resources);
+  if (graph.resources < 2) return;
+  const Graph packets = graph.only(Carried::kPackets);
+  const Routes routes(packets);
   for (std::uint32_t from = 0; from < graph.resources; ++from)
-    for (std::uint32_t to = 0; to < graph.resources; ++to) {
-      if (ways[from][to]) continue;
-      issues.push_back({"topology.links", fmt::format("there is no way from {} to {}; expected links that lead there",
-                                                      graph.nodes[from].name, graph.nodes[to].name)});
-      return;  // one names the gap; there may be thousands
-    }
+    for (std::uint32_t to = 0; to < graph.resources; ++to)
+      if (std::optional<GraphIssue> fault = fault_of(packets, routes, from, to)) {
+        issues.push_back(std::move(*fault));
+        return;  // one names the gap; there may be thousands
+      }
 }
 
 }  // namespace carousel::config

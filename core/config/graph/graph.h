@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,25 +19,35 @@ struct Graph {
     std::string name;
     const GraphNode* drawn;  ///< of the configuration, which must outlive the graph
     std::size_t entry;       ///< its place in topology.nodes
+    GraphPoint at;           ///< its place on the die, in mm, if it has one
   };
   /// From node to node, one way.
   struct Link {
     std::uint32_t from, to;
-    std::int64_t latency_cycles, bytes_per_cycle, depth;
-    std::size_t entry;                  ///< its place in topology.links
+    std::int64_t latency_cycles, bytes_per_cycle, depth, virtual_channels;
+    std::size_t entry;  ///< its place in topology.links
+    bool dateline;
     std::vector<Carried> carries = {};  ///< sorted
 
     bool carries_any(std::initializer_list<Carried> some) const;
+  };
+  /// A packet at `at` on its way to the resource `to` takes this link.
+  struct Hop {
+    std::uint32_t at, to, link;
+    std::size_t entry;  ///< its place in topology.ways
   };
 
   std::vector<Node> nodes;
   std::vector<Link> links;
   std::uint32_t resources = 0;
   NodeNames names;
+  Routing routing = Routing::kShortest;
+  std::optional<std::uint32_t> root;  ///< the node at the top for up_down, if it is named
+  std::vector<Hop> hops;              ///< the ways that are given, each node and destination once
 
   /// The numbers of its nodes of a kind, in order.
   std::vector<std::uint32_t> of_kind(GraphNodeKind kind) const;
-  /// The same nodes with the links alone that carry `what`.
+  /// The same nodes with the links alone that carry `what`. Ways of anything but packets are the shortest ones.
   Graph only(Carried what) const;
   /// "r[0] > r[1]"
   std::string name_of(const Link& link) const { return nodes[link.from].name + " > " + nodes[link.to].name; }
@@ -65,7 +76,8 @@ Graph draw_graph(const TopologyConfig& config, std::vector<GraphIssue>& issues);
 /// By start: the nodes to which ways lead from it, itself included.
 std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std::uint32_t>& starts);
 
-/// The faults of the whole: nodes without a link, resources between which no way leads packets.
+/// The faults of the whole: nodes without a link, resources between which no way leads packets, ways that go in a
+/// circle.
 void check_ways(const Graph& graph, std::vector<GraphIssue>& issues);
 
 }  // namespace carousel::config

@@ -33,6 +33,14 @@ bool check_node(const GraphNode& node, const std::string& key, const RuleBreach&
   if (node.interleave_bytes && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kMemory)
     breach(key + ".interleave_bytes", fmt::format("caches and memories hold lines; expected auto at a {}, found {}",
                                                   enum_name(node.kind), *node.interleave_bytes));
+  if (node.claim_cycles > node.latency_cycles)
+    breach(key + ".claim_cycles", fmt::format("expected at most latency_cycles, {}, of which it is a part; found {}",
+                                              node.latency_cycles, node.claim_cycles));
+  if ((node.step.given || node.columns) && !(node.at.given && node.count))
+    breach(key + (node.step.given ? ".step" : ".columns"),
+           "only the nodes of a group with a place stand side by side; expected count and at besides");
+  else if (node.at.given && node.count.value_or(1) > 1 && !node.step.given)
+    breach(key + ".at", "the nodes of a group cannot all stand there; expected step besides");
   return true;
 }
 
@@ -132,6 +140,17 @@ void check_graph(const Config& config, const RuleBreach& breach) {
     breach(fmt::format("topology.links.{}.depth", shallow->entry),
            fmt::format("flow: bubble keeps one place of a link free; expected at least 2 for {}, found {}",
                        graph.name_of(*shallow), shallow->depth));
+  if (config.workload.kind != WorkloadConfig::Kind::kTraffic)
+    for (std::size_t i = 0; i < c.links.size(); ++i)
+      if (c.links[i].virtual_channels || c.links[i].dateline)
+        breach(fmt::format("topology.links.{}.{}", i, c.links[i].dateline ? "dateline" : "virtual_channels"),
+               "virtual channels carry synthetic traffic, and packets of rays have one channel; expected none");
+  if (c.channels != ChannelRule::kDateline)
+    for (std::size_t i = 0; i < c.links.size(); ++i)
+      if (c.links[i].dateline)
+        breach(fmt::format("topology.links.{}.dateline", i),
+               fmt::format("datelines change the channel under topology.channels: dateline, found {}",
+                           enum_name(c.channels)));
   for (GraphIssue& issue : issues) breach(issue.key, std::move(issue.message));
 }
 

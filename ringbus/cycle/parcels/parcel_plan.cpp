@@ -7,7 +7,7 @@
 
 #include "core/system/error.h"
 #include "ringbus/topology/graph_facts.h"
-#include "ringbus/topology/routes.h"
+#include "ringbus/topology/graph/routes.h"
 #include "ringbus/topology/wire_length.h"
 
 namespace carousel::ringbus {
@@ -66,14 +66,15 @@ std::vector<Graph::Link> ParcelPlan::without_packets() const {
   return out;
 }
 
-double ParcelPlan::length(const Graph::Link& link) const {
-  return place_distance(graph.resources, beside_[link.from], beside_[link.to]);
+double ParcelPlan::length(const Graph::Link& link, double link_mm) const {
+  if (graph.nodes[link.from].at.given && graph.nodes[link.to].at.given) return ringbus::link_mm(graph, link);
+  return link_mm * place_distance(graph.resources, beside_[link.from], beside_[link.to]);
 }
 
-double ParcelPlan::lengths_without_packets(std::int64_t bytes_per_cycle) const {
+double ParcelPlan::lengths_without_packets(std::int64_t bytes_per_cycle, double link_mm) const {
   double sum = 0;
   for (const Graph::Link& link : without_packets())
-    sum += length(link) * static_cast<double>(link.bytes_per_cycle) / static_cast<double>(bytes_per_cycle);
+    sum += length(link, link_mm) * static_cast<double>(link.bytes_per_cycle) / static_cast<double>(bytes_per_cycle);
   return sum;
 }
 

@@ -33,11 +33,11 @@ struct ParcelPlan {
   const config::Graph::Link& drawn(const Link& link) const { return graph.links[link.link]; }
   /// The links on which no packet travels, in order.
   std::vector<config::Graph::Link> without_packets() const;
-  /// The length of a link in links between neighbours, as wire_length(): a node that is no resource stands beside the
-  /// nearest one.
-  double length(const config::Graph::Link& link) const;
+  /// The length of a link in mm, where one between neighbours is `link_mm` long, as wire_length(): from place to place
+  /// if its nodes have places; else a node that is no resource stands beside the nearest one.
+  double length(const config::Graph::Link& link, double link_mm) const;
   /// The lengths of all without packets, each times its width over `bytes_per_cycle`.
-  double lengths_without_packets(std::int64_t bytes_per_cycle) const;
+  double lengths_without_packets(std::int64_t bytes_per_cycle, double link_mm) const;
 
  private:
   friend ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes);

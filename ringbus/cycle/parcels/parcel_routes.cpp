@@ -1,6 +1,6 @@
 #include "ringbus/cycle/parcels/parcel_routes.h"
 
-#include "ringbus/topology/routes.h"
+#include "ringbus/topology/graph/routes.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -47,8 +47,11 @@ Network::NodePorts Network::ports_at(ResourceId node) const {
     if (const std::uint32_t given = topology.hub_places(node.value - topology.resources()); given > 0) places = given;
   NodePorts ports;
   // Where others share a link, their agent stands a cycle behind its near end.
-  for (const std::uint32_t i : topology.ports(node).in)
-    ports.in.push_back({&far(i), far_[i] ? SharedLink::far_latency(topology.wires()[i].latency_cycles) : latency(i)});
+  for (const std::uint32_t i : topology.ports(node).in) {
+    const Topology::Wire& wire = topology.wires()[i];
+    ports.in.push_back({&far(i), (far_[i] ? SharedLink::far_latency(wire.latency_cycles) : latency(i)) +
+                                     static_cast<Cycle>(wire.credit_cycles)});
+  }
   for (const std::uint32_t i : topology.ports(node).out) {
     const Topology::Wire& wire = topology.wires()[i];
     const Cycle away = (far_[i] ? Cycle{1} : latency(i)) + static_cast<Cycle>(wire.node_cycles);

@@ -266,7 +266,7 @@ TEST(Topology, TrafficTakesTheShortestWay) {
       TopologyConfig c = config(shape, n);
       c.rings = 3;
       const Topology t(c);
-      if (!t.carries_traffic()) continue;
+      if (!t.carries_traffic() || shape == TopologyShape::kHierarchical) continue;  // that one runs as a graph
       for (std::uint32_t from = 0; from < n; ++from) {
         for (std::uint32_t to = 0; to < n; ++to) {
           for (std::uint32_t random = 0; random < 7; ++random) {

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "core/config/graph/graph.h"
-#include "ringbus/topology/routes.h"
+#include "core/types/ids.h"
+#include "ringbus/topology/graph/routes.h"
 
 namespace carousel::ringbus {
 
@@ -25,19 +27,21 @@ class Dependencies {
   /// that a link holds. The search ends with a circle of at most `enough` packets.
   std::vector<std::uint32_t> smallest_circle(const std::vector<std::uint64_t>& places, std::uint64_t enough) const;
 
- private:
+  /// By link: it may be part of a circle. The others are not.
   std::vector<bool> on_circles() const;
 
+ private:
   std::vector<std::vector<std::uint32_t>> after_;
 };
 
 /// The dependencies of packets with one destination each, from any resource to any other, which always takes them in.
 Dependencies traffic_dependencies(const config::Graph& graph, const Routes& routes);
 
-/// The dependencies of packets that visit resources in the order of their numbers, begin with any and come home to it.
-/// At a visit a packet holds its place until the link to the next one has a place. `all`: each visits all resources;
-/// otherwise any of them. `bounded`: by node, whether its places are; a node with room for all packets makes none wait.
-Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes, bool all,
+/// The dependencies of packets that visit resources in the order of a round, begin with any and come home to it.
+/// At a visit a packet holds its place until the link to the next one has a place. `round`: by resource, the one after
+/// it, if each visits all; empty: each visits any of them. `bounded`: by node, whether its places are; a node with room
+/// for all packets makes none wait.
+Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes, std::span<const ResourceId> round,
                                 const std::vector<bool>& bounded);
 
 }  // namespace carousel::ringbus

@@ -1,4 +1,4 @@
-#include "ringbus/topology/dependencies.h"
+#include "ringbus/topology/graph/dependencies.h"
 
 #include <algorithm>
 #include <limits>
@@ -91,7 +91,7 @@ Dependencies traffic_dependencies(const config::Graph& graph, const Routes& rout
   return out;
 }
 
-Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes, bool all,
+Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes, std::span<const ResourceId> round,
                                 const std::vector<bool>& bounded) {
   Dependencies ways(graph.links.size());
   const std::uint32_t n = graph.resources;
@@ -99,7 +99,7 @@ Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes
   std::vector<std::vector<std::uint32_t>> come(n), leave(n);
   for (std::uint32_t from = 0; from < n; ++from)
     for (std::uint32_t to = 0; to < n; ++to) {
-      if (from == to || (all && to != (from + 1) % n)) continue;
+      if (from == to || (!round.empty() && to != round[from].value)) continue;
       add_way(ways, routes, from, to);
       std::uint32_t first = Routes::kNone, last = Routes::kNone;
       routes.for_each_link(from, to, [&](std::uint32_t link) {

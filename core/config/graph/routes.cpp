@@ -1,0 +1,130 @@
+#include "core/config/graph/routes.h"
+
+#include <algorithm>
+#include <numeric>
+#include <set>
+#include <tuple>
+#include <utility>
+
+namespace carousel::config {
+
+namespace {
+
+using Links = std::vector<std::vector<std::uint32_t>>;  // by node
+
+constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
+
+/// Fills in the row of `start`: the first link of the shortest way to each node.
+void find_ways(const Graph& graph, const Links& out, std::uint32_t start, std::uint32_t* row) {
+  std::vector<std::int64_t> distance(graph.nodes.size(), kFar);
+  std::set<std::pair<std::int64_t, std::uint32_t>> open{{0, start}};
+  distance[start] = 0;
+  while (!open.empty()) {
+    const auto [so_far, at] = *open.begin();
+    open.erase(open.begin());
+    for (const std::uint32_t i : out[at]) {
+      const Graph::Link& link = graph.links[i];
+      const std::int64_t there = so_far + link.latency_cycles;
+      if (there >= distance[link.to]) continue;
+      open.erase({distance[link.to], link.to});
+      distance[link.to] = there;
+      row[link.to] = at == start ? i : row[at];
+      open.emplace(there, link.to);
+    }
+  }
+}
+
+/// Links from `start` to each node, in either direction; kNone where none leads.
+std::vector<std::uint32_t> levels_from(const Graph& graph, std::uint32_t start) {
+  Links beside(graph.nodes.size());
+  for (const Graph::Link& link : graph.links) {
+    beside[link.from].push_back(link.to);
+    beside[link.to].push_back(link.from);
+  }
+  std::vector<std::uint32_t> level(graph.nodes.size(), Routes::kNone), open{start};
+  level[start] = 0;
+  for (std::size_t i = 0; i < open.size(); ++i)
+    for (const std::uint32_t next : beside[open[i]])
+      if (level[next] == Routes::kNone) {
+        level[next] = level[open[i]] + 1;
+        open.push_back(next);
+      }
+  return level;
+}
+
+/// Fills in the table of up_down, whose columns are destinations.
+class UpDown {
+ public:
+  UpDown(const Graph& graph, const Links& out)
+      : graph_(graph), out_(out), level_(levels_from(graph, root_of(graph))), downwards_(graph.nodes.size()) {
+    std::iota(downwards_.begin(), downwards_.end(), 0u);
+    std::ranges::sort(downwards_, {}, [&](std::uint32_t node) { return height(node); });
+  }
+
+  void find_ways_to(std::uint32_t to, std::uint32_t* links) const {
+    const std::size_t nodes = graph_.nodes.size();
+    std::vector<std::int64_t> distance(nodes, kFar);
+    distance[to] = 0;
+    const auto look = [&](std::uint32_t at, bool down) {
+      std::tuple best{kFar, Routes::kNone, Routes::kNone};  // cycles, next node, link
+      for (const std::uint32_t i : out_[at]) {
+        const Graph::Link& link = graph_.links[i];
+        if ((height(link.to) > height(at)) != down || distance[link.to] == kFar) continue;
+        best = std::min(best, std::tuple{link.latency_cycles + distance[link.to], link.to, i});
+      }
+      if (std::get<0>(best) == kFar) return;
+      distance[at] = std::get<0>(best);
+      links[at * nodes + to] = std::get<2>(best);
+    };
+    // A way down leads to nodes that are lower, which have theirs already.
+    for (std::size_t i = nodes; i-- > 0;)
+      if (downwards_[i] != to) look(downwards_[i], true);
+    for (const std::uint32_t at : downwards_)
+      if (distance[at] == kFar) look(at, false);
+  }
+
+ private:
+  std::pair<std::uint32_t, std::uint32_t> height(std::uint32_t node) const { return {level_[node], node}; }
+
+  const Graph& graph_;
+  const Links& out_;
+  std::vector<std::uint32_t> level_;      // by node: links from the root
+  std::vector<std::uint32_t> downwards_;  // nodes, the root first
+};
+
+}  // namespace
+
+std::uint32_t root_of(const Graph& graph) {
+  if (graph.root) return *graph.root;
+  std::uint32_t best = 0, least = Routes::kNone;
+  for (std::uint32_t node = 0; node < graph.nodes.size(); ++node) {
+    const std::vector<std::uint32_t> levels = levels_from(graph, node);
+    if (levels.front() == Routes::kNone) continue;  // no packets come here
+    std::uint32_t farthest = 0;
+    for (const std::uint32_t level : levels)
+      if (level != Routes::kNone) farthest = std::max(farthest, level);
+    if (farthest < least) {
+      best = node;
+      least = farthest;
+    }
+  }
+  return best;
+}
+
+Routes::Routes(const Graph& graph)
+    : nodes_(graph.nodes.size()), links_(nodes_ * nodes_, kNone), ends_(graph.links.size()) {
+  Links out(nodes_);
+  for (std::uint32_t i = 0; i < graph.links.size(); ++i) {
+    out[graph.links[i].from].push_back(i);
+    ends_[i] = graph.links[i].to;
+  }
+  if (graph.routing == Routing::kUpDown) {
+    const UpDown rule(graph, out);
+    for (std::uint32_t node = 0; node < nodes_; ++node) rule.find_ways_to(node, links_.data());
+    return;
+  }
+  for (std::uint32_t node = 0; node < nodes_; ++node) find_ways(graph, out, node, links_.data() + node * nodes_);
+  for (const Graph::Hop& hop : graph.hops) links_[hop.at * nodes_ + hop.to] = hop.link;
+}
+
+}  // namespace carousel::config
