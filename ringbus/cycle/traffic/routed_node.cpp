@@ -1,12 +1,19 @@
 #include "ringbus/cycle/traffic/routed_node.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <fmt/format.h>
 
 namespace carousel::ringbus::cycle {
 
 namespace {
+
+/// Of what goes in flits the sink takes one at a time.
+TrafficNodeSettings of_sink(TrafficNodeSettings settings) {
+  if (settings.pieces > 1) settings.flits = 1;
+  return settings;
+}
 
 std::uint16_t packet_cycles(const TrafficNodeSettings& settings, const Topology::Wire& wire) {
   return static_cast<std::uint16_t>(ceil_div(settings.packet_bytes, static_cast<std::uint64_t>(wire.bytes_per_cycle)));
@@ -16,36 +23,81 @@ std::uint16_t packet_cycles(const TrafficNodeSettings& settings, const Topology:
 
 RoutedNode::RoutedNode(ResourceId id, const Topology& topology, const TrafficNodeSettings& settings,
                        std::optional<TrafficSource> source, std::uint64_t packets, TrafficWindow window, Ports ports)
-    : TrafficAgent(settings, window),
+    : TrafficAgent(of_sink(settings), window),
       id_(id),
       topology_(topology),
       settings_(settings),
+      claim_cycles_(topology.claim_cycles(id)),
       in_(std::move(ports.in)),
       out_(std::move(ports.out)),
-      queue_free_(in_.size() + 1),
-      exits_(out_.size() + 1),
-      source_{std::move(source), packets, {}} {
-  for (const std::uint32_t wire : topology.ports(id).out)
-    cycles_.push_back(packet_cycles(settings, topology.wires()[wire]));
+      source_{std::move(source), packets} {
+  const ChannelPlan& plan = topology.channels();
+  std::size_t most = 1, queues = 0;
+  for (const std::uint32_t link : topology.ports(id).in) {
+    entries_.push_back({.first = queues, .queues = plan.channels[link]});
+    queues += plan.channels[link];
+  }
+  std::size_t channels = 0;
+  for (const std::uint32_t link : topology.ports(id).out) {
+    exits_.push_back(
+        {.link = link,
+         .first = channels,
+         .channels = plan.channels[link],
+         .cycles = settings.pieces > 1 ? std::uint16_t{1} : packet_cycles(settings, topology.wires()[link])});
+    channels += plan.channels[link];
+    most = std::max<std::size_t>(most, plan.channels[link]);
+  }
+  source_.queues.resize(most);
+  entries_.push_back({.first = queues, .queues = most});
+  claimed_.resize(queues + most);
+  channels_.resize(queues + most, kNone);
+  taken_.resize(channels);
+  exits_.push_back({.cycles = settings.pieces > 1 ? std::uint16_t{1} : settings.flits});
+  asking_.resize(entries_.size() * exits_.size());
+  offers_.resize(exits_.size());
   create();
 }
 
 /// Turns to the source's next packet.
 void RoutedNode::create() {
-  source_.ready = kNever;
+  const Cycle before = source_.next.ready;
+  source_.next.ready = kNever;
   if (source_.left == 0) return;
   --source_.left;
   source_.packets->advance();
   const Cycle created = source_.packets->created();
   const ResourceId to = source_.packets->destination();
   const std::uint16_t hops = topology_.route(id_, to, 0).hops;
-  source_.token = {created, static_cast<std::uint16_t>(id_.value), 0, settings_.flits,
-                   hops,    static_cast<std::uint16_t>(to.value)};
-  source_.ready = std::max(created + settings_.inject_cycles, source_.free);
+  source_.next.token = {created, static_cast<std::uint16_t>(id_.value), 0, settings_.flits,
+                        hops,    static_cast<std::uint16_t>(to.value),  0, 0};
+  source_.next.ready = created + settings_.inject_cycles;
+  if (before != kNever) source_.next.ready = std::max(source_.next.ready, before + settings_.flits);
   if (created < window_.begin) return;
   ++offered_.packets;
   offered_.routers += hops + 1u;
   offered_.travel += alone(to);
+}
+
+/// Puts the packets that have left the source by `now` into its queues, as far as these have places.
+void RoutedNode::fill_source(Cycle now) {
+  const std::size_t places = std::size_t{settings_.link_depth} * settings_.pieces;
+  const auto full = [&](std::size_t queue) { return source_.queues[queue].size() + settings_.pieces > places; };
+  while (!source_.blocked && source_.next.ready <= now) {
+    std::size_t queue = source_.last, tried = 0;
+    do queue = queue + 1 < source_.queues.size() ? queue + 1 : 0;
+    while (full(queue) && ++tried < source_.queues.size());
+    if (full(queue)) {
+      source_.blocked = true;  // until something has left
+      return;
+    }
+    for (std::uint16_t i = 0; i < settings_.pieces; ++i) {
+      Waiting& piece = source_.next;
+      piece.token.behind = static_cast<std::uint16_t>(settings_.pieces - 1 - i);
+      source_.queues[queue].push_back({piece.token, piece.ready + i});
+    }
+    source_.last = queue;
+    create();
+  }
 }
 
 /// Cycles of a packet's way if no other is on it.
@@ -64,18 +116,33 @@ Cycle RoutedNode::alone(ResourceId to) const {
 
 // ---- time
 
+Cycle RoutedNode::ready(std::size_t queue) const {
+  Cycle there = kNever;
+  if (!of_source(queue))
+    there = in_[queue].next();
+  else if (const Fifo<Waiting>& waiting = source_.queues[queue - in_.size()]; !waiting.empty())
+    there = waiting.front().ready;
+  return there == kNever ? kNever : std::max(there, claimed_[queue]);
+}
+
 Cycle RoutedNode::next() const {
-  Cycle first = kNever;
-  for (std::size_t queue = 0; queue < queue_free_.size(); ++queue) {
-    Cycle at = ready(queue);
-    if (at == kNever) continue;
-    if (at <= now_) {  // it waits
-      const std::size_t exit = exit_of(this->first(queue));
-      at = std::max(queue_free_[queue], exit < out_.size() ? out_[exit].opens(1) : sink_.opens());
-      at = std::max(at, now_ + 1);
+  Cycle first = source_.blocked ? kNever : source_.next.ready;
+  for (const Entry& entry : entries_)
+    for (std::size_t queue = entry.first; queue < entry.first + entry.queues; ++queue) {
+      Cycle at = ready(queue);
+      if (at == kNever) continue;
+      if (at <= now_) {  // it waits
+        const TrafficToken& token = this->first(queue);
+        const Exit& exit = exits_[exit_of(token)];
+        Cycle opens = sink_.opens();
+        if (channels_[queue] != kNone)
+          opens = out_[channels_[queue]].opens(1);
+        else if (&exit != &exits_.back())
+          opens = channel_opens(exit, class_of(token, of_source(queue), exit));
+        at = std::max({entry.free, exit.free, opens, now_ + 1});
+      }
+      first = std::min(first, at);
     }
-    first = std::min(first, at);
-  }
   return first;
 }
 
@@ -85,48 +152,148 @@ void RoutedNode::run(Cycle end) {
 
 void RoutedNode::pass_marks(Cycle now) {
   for (; marks_passed_ < 2 && mark(marks_passed_) <= now; ++marks_passed_)
-    for (std::size_t port = 0; port < out_.size(); ++port)
-      exits_[port].busy[marks_passed_] = out_[port].busy(mark(marks_passed_));
+    for (Exit& exit : exits_) exit.busy[marks_passed_] = busy_at(exit, mark(marks_passed_));
+}
+
+Cycle RoutedNode::busy_at(const Exit& exit, Cycle at) const {
+  Cycle sum = 0;
+  for (std::size_t channel = 0; channel < exit.channels; ++channel) sum += out_[exit.first + channel].busy(at);
+  return sum;
+}
+
+Cycle RoutedNode::busy_before(std::size_t port, std::size_t i) const {
+  return i < marks_passed_ ? exits_[port].busy[i] : busy_at(exits_[port], mark(i));
+}
+
+TrafficAgent::Moved RoutedNode::moved(std::size_t port) const {
+  Moved sum;
+  for (std::size_t channel = 0; channel < exits_[port].channels; ++channel) {
+    const Out& out = out_[exits_[port].first + channel];
+    sum.packets += out.packets();
+    sum.busy += out.busy();
+    sum.stalled += out.stalled();
+  }
+  sum.packets /= settings_.pieces;
+  return sum;
 }
 
 void RoutedNode::step(Cycle now) {
   if (marks_passed_ < 2) pass_marks(now);
   now_ = now;
-  for (std::size_t exit = 0; exit < exits_.size(); ++exit) grant(exit, now);
+  fill_source(now);
+  ask(now);
+  for (std::size_t exit = 0; exit < exits_.size(); ++exit) offers_[exit] = offer(exit);
+  for (std::size_t entry = 0; entry < entries_.size(); ++entry)
+    for (std::size_t i = 0; i < exits_.size(); ++i) {
+      const std::size_t exit = (entries_[entry].next_exit + i) % exits_.size();
+      if (offers_[exit] != entry) continue;
+      move(entry, exit, now);
+      break;
+    }
 }
 
 // ---- packets
 
-/// Lets one packet leave by an exit, if any can.
-bool RoutedNode::grant(std::size_t exit, Cycle now) {
-  const bool sink = exit == out_.size();
-  for (std::size_t i = 0; i < queue_free_.size(); ++i) {
-    const std::size_t queue = (exits_[exit].turn + i) % queue_free_.size();
-    if (ready(queue) > now || queue_free_[queue] > now || exit_of(first(queue)) != exit) continue;
-    // A packet of the source has its head here, and one that has come to its stop has its tail.
-    const Cycle tail = queue < in_.size() ? now : now + settings_.flits - 1u;
-    if (sink ? !sink_.open(tail) : !out_[exit].open(now, 1)) return false;
-    move(queue, exit, now);
-    exits_[exit].turn = queue + 1 < queue_free_.size() ? queue + 1 : 0;
-    return true;
+/// The channel with a place that comes after the one that was taken last.
+std::optional<std::size_t> RoutedNode::open_channel(const Exit& exit, std::uint32_t wanted, Cycle now) {
+  const auto [begin, end] = topology_.channels().range(exit.link, wanted);
+  const std::size_t many = end - begin;
+  for (std::size_t i = 1; i <= many; ++i) {
+    const std::size_t channel = exit.first + begin + (exit.channel + i) % many;
+    if (!taken_[channel] && out_[channel].open(now, 1)) return channel;
   }
-  return false;
+  return std::nullopt;
 }
 
-void RoutedNode::move(std::size_t queue, std::size_t exit, Cycle now) {
-  const bool own = queue == in_.size();
-  TrafficToken token = own ? source_.token : in_[queue].take(now);
-  if (exit == out_.size()) {
-    sink_.deliver(token, own ? now + settings_.flits - 1u : now);
-    if (own) queue_free_[queue] = now + settings_.flits;
-  } else {
-    token.link_cycles = cycles_[exit];
-    out_[exit].launch(token, now, topology_.exit(id_, ResourceId(token.stop)).through);
-    queue_free_[queue] = now + token.link_cycles;
+Cycle RoutedNode::channel_opens(const Exit& exit, std::uint32_t wanted) const {
+  const auto [begin, end] = topology_.channels().range(exit.link, wanted);
+  Cycle first = kNever;
+  for (std::size_t channel = exit.first + begin; channel < exit.first + end; ++channel)
+    if (!taken_[channel]) first = std::min(first, out_[channel].opens(1));
+  return first;
+}
+
+/// When the last flit of what begins to leave a queue for the sink is there. A packet of the source has its head here,
+/// and one that has come to its stop has its tail.
+Cycle RoutedNode::tail(std::size_t queue, Cycle now) const {
+  return of_source(queue) && settings_.pieces == 1 ? now + settings_.flits - 1u : now;
+}
+
+/// The first packet of the queue may leave by the exit that it wants.
+bool RoutedNode::may_leave(std::size_t queue, std::size_t number, Cycle now) {
+  const Exit& exit = exits_[number];
+  if (exit.free > now) return false;
+  if (channels_[queue] != kNone) return out_[channels_[queue]].open(now, 1);
+  if (&exit != &exits_.back())
+    return open_channel(exit, class_of(first(queue), of_source(queue), exit), now).has_value();
+  return sink_.open(tail(queue, now));
+}
+
+/// Fills in which queues ask for which exits.
+void RoutedNode::ask(Cycle now) {
+  std::fill(asking_.begin(), asking_.end(), kNone);
+  for (std::size_t from = 0; from < entries_.size(); ++from) {
+    const Entry& entry = entries_[from];
+    if (entry.free > now) continue;
+    for (std::size_t i = 0; i < entry.queues; ++i) {
+      const std::size_t queue = entry.first + (entry.turn + i) % entry.queues;
+      if (ready(queue) > now) continue;
+      const std::size_t exit = exit_of(first(queue));
+      std::size_t& asking = asking_[from * exits_.size() + exit];
+      if (asking == kNone && may_leave(queue, exit, now)) asking = queue;
+    }
   }
-  if (!own) return;
-  source_.free = queue_free_[queue];
-  create();
+}
+
+/// The entry to which an exit offers itself.
+std::optional<std::size_t> RoutedNode::offer(std::size_t exit) const {
+  for (std::size_t i = 0; i < entries_.size(); ++i) {
+    const std::size_t entry = (exits_[exit].next_entry + i) % entries_.size();
+    if (asking_[entry * exits_.size() + exit] != kNone) return entry;
+  }
+  return std::nullopt;
+}
+
+void RoutedNode::move(std::size_t from, std::size_t to, Cycle now) {
+  Entry& entry = entries_[from];
+  Exit& exit = exits_[to];
+  const std::size_t queue = asking_[from * exits_.size() + to];
+  const bool own = of_source(queue);
+  entry.turn = (queue - entry.first + 1) % entry.queues;
+  entry.next_exit = to + 1 < exits_.size() ? to + 1 : 0;
+  exit.next_entry = from + 1 < entries_.size() ? from + 1 : 0;
+  const bool head = is_head(first(queue)), last = first(queue).behind == 0;
+  if (&exit == &exits_.back()) {
+    const Cycle end = tail(queue, now);
+    const TrafficToken token = take(queue, now);
+    if (last) sink_.deliver(token, end);
+    exit.free = now + 1;
+    entry.free = end + 1;
+  } else {
+    const std::uint32_t wanted = class_of(first(queue), own, exit);
+    if (head) {
+      channels_[queue] = *open_channel(exit, wanted, now);
+      exit.channel = channels_[queue] - exit.first - topology_.channels().range(exit.link, wanted).first;
+    }
+    const std::size_t channel = channels_[queue];
+    taken_[channel] = !last;
+    if (last) channels_[queue] = kNone;
+    TrafficToken token = take(queue, now);
+    token.channel = static_cast<std::uint16_t>(wanted);
+    token.link_cycles = exit.cycles;
+    out_[channel].launch(token, now, topology_.exit(id_, ResourceId(token.stop)).through);
+    exit.free = entry.free = now + exit.cycles;
+  }
+  claimed_[queue] = entry.free + (last ? claim_cycles_ : 0);
+}
+
+TrafficToken RoutedNode::take(std::size_t queue, Cycle now) {
+  if (!of_source(queue)) return in_[queue].take(now);
+  Fifo<Waiting>& waiting = source_.queues[queue - in_.size()];
+  const TrafficToken token = waiting.front().token;
+  waiting.pop_front();
+  if (std::exchange(source_.blocked, false)) source_.next.ready = std::max(source_.next.ready, now + 1);
+  return token;
 }
 
 std::string RoutedNode::describe() const {
@@ -134,7 +301,9 @@ std::string RoutedNode::describe() const {
   for (std::size_t queue = 0; queue < in_.size(); ++queue)
     if (in_[queue].next() != kNever)
       text += fmt::format("; a packet of resource {} to resource {} waits", first(queue).source, first(queue).stop);
-  if (source_.ready != kNever) text += fmt::format("; {} packets wait to get in", source_.left + 1);
+  std::uint64_t own = source_.left + (source_.next.ready != kNever ? 1 : 0);
+  for (const Fifo<Waiting>& waiting : source_.queues) own += waiting.size();
+  if (own > 0) text += fmt::format("; {} packets wait to get in", own);
   if (text.empty()) return text;
   const bool resource = id_.value < topology_.resources();
   return fmt::format("{} {}", resource ? "resource" : "router",

@@ -8,14 +8,27 @@
 
 #include "ringbus/cycle/traffic/traffic_agent.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
+#include "ringbus/time/fifo.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {
 
-/// A node of a graph without rays: a router with a queue at the end of each link that leads to it and, at a resource, a
-/// source and a sink. There are no places before the links that leave: a packet waits in its queue, and holds up those
-/// behind it, until its link is free and has a place at the other end. Queues, the source among them, have their turns
-/// at each link and at the sink. One flit a cycle leaves a queue, the source, and gets out to the sink.
+/// A node of a graph without rays: a router with a queue for each virtual channel of each link that leads to it and, at
+/// a resource, a source and a sink. There are no places before the links that leave: a packet waits in its queue, and
+/// holds up those behind it, until its link is free and a channel that it may take (ChannelPlan) has a place at the
+/// other end. Each link that leaves, and the sink, offers itself to one of the links that lead here with a packet for
+/// it, by turns; a link that gets several offers takes one, by turns, and the others lapse for that cycle (N. McKeown,
+/// The iSLIP scheduling algorithm for input-queued switches, IEEE/ACM Trans. Networking 7 (1999), of one iteration, as
+/// in BookSim2). Queues of a link have turns, too. One flit a cycle leaves the queues of a link, or the source, and
+/// gets out to the sink. The source puts a packet into the next of as many queues as a link has, or waits until one of
+/// them has a place.
+///
+/// Where links are of one width and no router stores packets whole, flits go one by one, and those of packets on
+/// several channels of a link alternate: a channel belongs to a packet from its first flit to its last, and has places
+/// for the flits of `depth` packets. Elsewhere a packet keeps its link until it is over.
+///
+/// The first packet of a queue claims its channel within the node's cycles; one that stood behind another does so for
+/// `claim_cycles` after that one's last flit has left.
 ///
 /// A packet of L flits, from its creation until its last flit is delivered and if no other packet is in its way, takes
 ///     inject_cycles + sum over its links of (node_cycles + latency_cycles) + L - 1 + eject_cycles
@@ -23,6 +36,7 @@ namespace carousel::ringbus::cycle {
 /// router with `forward: whole`, is stored whole and takes its length once more.
 class RoutedNode final : public TrafficAgent {
  public:
+  /// By link, and within a link by channel.
   struct Ports {
     std::vector<In> in;
     std::vector<Out> out;
@@ -36,48 +50,86 @@ class RoutedNode final : public TrafficAgent {
   void run(Cycle end) override;
   std::string describe() const override;
 
-  const Out& out(std::size_t port) const override { return out_[port]; }
+  Moved moved(std::size_t port) const override;
   TrafficOffered offered() const override { return offered_; }
   Cycle busy_in_window(std::size_t port) const override { return busy_before(port, 1) - busy_before(port, 0); }
 
  private:
+  static constexpr std::size_t kNone = ~std::size_t{0};
+
+  /// Packets that have left the source, and wait to be injected.
+  struct Waiting {
+    TrafficToken token;
+    Cycle ready = 0;
+  };
   /// The source, and the packet that it has created or will create next.
   struct Source {
     std::optional<TrafficSource> packets;
     std::uint64_t left = 0;  // after that packet
-    TrafficToken token;
-    Cycle ready = kNever, free = 0;  // not injected before
+    Waiting next{{}, kNever};
+    std::vector<Fifo<Waiting>> queues{};
+    std::size_t last = 0;  // the queue that got the last packet
+    bool blocked = false;  // all queues are full
   };
+  /// A link that leads here, or the source: one flit a cycle leaves its queues.
+  struct Entry {
+    std::size_t first = 0, queues = 1, turn = 0;  // of its queues the one that goes first
+    std::size_t next_exit = 0;                    // of the exits that offer themselves the one that is taken first
+    Cycle free = 0;                               // a flit leaves until then
+  };
+  /// A link that leaves, or the sink.
   struct Exit {
-    std::size_t turn = 0;         // the queue that goes first
-    std::array<Cycle, 2> busy{};  // cycles in which a flit left before the marks that are passed
+    std::uint32_t link = 0;                   // its number
+    std::size_t first = 0, channels = 0;      // in out_
+    std::uint16_t cycles = 0;                 // of a packet
+    std::size_t next_entry = 0, channel = 0;  // the entry that goes first; the channel that went last
+    Cycle free = 0;                           // a flit leaves until then
+    std::array<Cycle, 2> busy{};              // cycles in which a flit left before the marks that are passed
   };
 
   void step(Cycle now);
   void pass_marks(Cycle now);
-  Cycle busy_before(std::size_t port, std::size_t i) const {
-    return i < marks_passed_ ? exits_[port].busy[i] : out_[port].busy(mark(i));
-  }
+  Cycle busy_before(std::size_t port, std::size_t i) const;
+  Cycle busy_at(const Exit& exit, Cycle at) const;
   void create();
+  void fill_source(Cycle now);
   Cycle alone(ResourceId to) const;
-  /// When the first packet of a queue is there; kNever without one.
-  Cycle ready(std::size_t queue) const { return queue < in_.size() ? in_[queue].next() : source_.ready; }
-  const TrafficToken& first(std::size_t queue) const { return queue < in_.size() ? in_[queue].front() : source_.token; }
-  /// The port of a packet's next link; behind those, the sink.
-  std::size_t exit_of(const TrafficToken& token) const {
-    return token.stop == id_.value ? out_.size() : topology_.exit(id_, ResourceId(token.stop)).port;
+  bool of_source(std::size_t queue) const { return queue >= in_.size(); }
+  /// When the first packet of a queue may leave, as far as the queue goes; kNever without one.
+  Cycle ready(std::size_t queue) const;
+  const TrafficToken& first(std::size_t queue) const {
+    return of_source(queue) ? source_.queues[queue - in_.size()].front().token : in_[queue].front();
   }
-  bool grant(std::size_t exit, Cycle now);
-  void move(std::size_t queue, std::size_t exit, Cycle now);
+  /// The number of a packet's exit; that of the sink is behind those of the links.
+  std::size_t exit_of(const TrafficToken& token) const {
+    return token.stop == id_.value ? exits_.size() - 1 : topology_.exit(id_, ResourceId(token.stop)).port;
+  }
+  std::uint32_t class_of(const TrafficToken& token, bool own, const Exit& exit) const {
+    return own ? 0 : topology_.channels().after(token.channel, exit.link);
+  }
+  Cycle tail(std::size_t queue, Cycle now) const;
+  bool may_leave(std::size_t queue, std::size_t exit, Cycle now);
+  bool is_head(const TrafficToken& token) const { return token.behind + 1 == settings_.pieces; }
+  std::optional<std::size_t> open_channel(const Exit& exit, std::uint32_t wanted, Cycle now);
+  Cycle channel_opens(const Exit& exit, std::uint32_t wanted) const;
+  void ask(Cycle now);
+  std::optional<std::size_t> offer(std::size_t exit) const;
+  void move(std::size_t entry, std::size_t exit, Cycle now);
+  TrafficToken take(std::size_t queue, Cycle now);
 
   ResourceId id_;
   const Topology& topology_;
   TrafficNodeSettings settings_;
+  Cycle claim_cycles_;
   std::vector<In> in_;
   std::vector<Out> out_;
-  std::vector<std::uint16_t> cycles_;  // of a packet on each link
-  std::vector<Cycle> queue_free_;      // by link, and the source: a flit leaves until then
+  std::vector<Cycle> claimed_;         // by queue: its first packet does not leave before
+  std::vector<std::size_t> channels_;  // by queue: the place in out_ of the channel that its packet has, or kNone
+  std::vector<bool> taken_;            // by place in out_: a packet has it
+  std::vector<Entry> entries_;         // by link, and the source
   std::vector<Exit> exits_;            // by link, and the sink
+  std::vector<std::size_t> asking_;    // by entry and exit: the queue whose first packet may leave there, or kNone
+  std::vector<std::optional<std::size_t>> offers_;  // by exit: the entry
   Source source_;
   TrafficOffered offered_;
   Cycle now_ = 0;

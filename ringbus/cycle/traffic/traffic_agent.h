@@ -29,8 +29,12 @@ class TrafficAgent : public Agent {
 
   const TrafficSink& sink() const { return sink_; }
   virtual TrafficOffered offered() const = 0;
-  /// The ports by which packets leave.
-  virtual const Out& out(std::size_t port) const = 0;
+  /// What the link of a port has moved.
+  struct Moved {
+    std::uint64_t packets = 0;
+    Cycle busy = 0, stalled = 0;
+  };
+  virtual Moved moved(std::size_t port) const = 0;
   /// Cycles of the window in which the link of `port` moved a flit, once the run is over.
   virtual Cycle busy_in_window(std::size_t port) const = 0;
 

@@ -11,6 +11,7 @@
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/protocol/flow_rules.h"
 #include "ringbus/time/windows.h"
+#include "ringbus/topology/drawn_shape.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
@@ -34,14 +35,19 @@ class TrafficRun {
                                                 static_cast<std::uint64_t>(traffic.packet_bytes));
     const MessageKind deliveries =
         channels_.carry({"deliveries", "resources", "neighbours", "wires beside the links", width}, kAckBytes);
-    for (const Topology::Wire& wire : topology_.wires()) {
+    for (std::size_t i = 0; i < topology_.wires().size(); ++i) {
+      const Topology::Wire& wire = topology_.wires()[i];
       const ChannelEnds ends{wire.from.value, wire.to.value, static_cast<Cycle>(wire.latency_cycles)};
-      wires_.push_back(std::make_unique<WireOf<TrafficToken>>(channels_.at(packets, ends)));
+      first_wire_.push_back(wires_.size());
+      for (std::uint32_t n = 0; n < (topology_.routed() ? topology_.channels().channels[i] : 1); ++n)
+        wires_.push_back(std::make_unique<WireOf<TrafficToken>>(channels_.at(packets, ends)));
       if (flow_.counts_deliveries())
         acks_.push_back(std::make_unique<Channel<TrafficAck>>(channels_.at(deliveries, ends)));
     }
-    const TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
+    first_wire_.push_back(wires_.size());
+    TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
     if (topology_.routed()) {
+      if (topology_.flits_apart()) settings.pieces = settings.flits;
       add_routed(settings);
       return;
     }
@@ -95,12 +101,16 @@ class TrafficRun {
         source.emplace(config_.workload.traffic, static_cast<std::uint64_t>(config_.image.seed), resources,
                        ResourceId(n), plan_.gap);
       RoutedNode::Ports ports;
-      for (const std::uint32_t i : topology_.ports(ResourceId(n)).in)
-        ports.in.push_back({wires_[i].get(), static_cast<Cycle>(topology_.wires()[i].latency_cycles)});
+      for (const std::uint32_t i : topology_.ports(ResourceId(n)).in) {
+        const Topology::Wire& wire = topology_.wires()[i];
+        for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
+          ports.in.push_back({wires_[w].get(), static_cast<Cycle>(wire.latency_cycles + wire.credit_cycles)});
+      }
       for (const std::uint32_t i : topology_.ports(ResourceId(n)).out) {
         const Topology::Wire& wire = topology_.wires()[i];
-        ports.out.emplace_back(*wires_[i], static_cast<Cycle>(wire.latency_cycles + wire.node_cycles),
-                               static_cast<std::uint32_t>(wire.depth), 1);
+        for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
+          ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles + wire.node_cycles),
+                                 static_cast<std::uint32_t>(wire.depth) * settings.pieces, 1);
       }
       nodes_.push_back(std::make_unique<RoutedNode>(ResourceId(n), topology_, settings, std::move(source),
                                                     n < resources ? plan_.packets[n] : 0, plan_.window,
@@ -157,12 +167,16 @@ class TrafficRun {
     for (const Topology::Wire& wire : topology_.wires()) {
       const TrafficAgent& node = *nodes_[wire.from.value];
       const std::size_t exit = topology_.out_port_of(out.links.size());
-      const TrafficAgent::Out& port = node.out(exit);
+      const TrafficAgent::Moved moved = node.moved(exit);
       out.busy_in_window.push_back(node.busy_in_window(exit));
-      out.links.push_back(
-          {wire.from.value, wire.to.value, {port.busy(), port.stalled()}, wires_[out.links.size()]->queue});
-      out.link_packets.push_back(port.packets());
-      out.hops += port.packets();
+      Occupancy queue;  // of all its channels
+      for (std::size_t i = first_wire_[out.links.size()]; i < first_wire_[out.links.size() + 1]; ++i) {
+        queue.packet_cycles += wires_[i]->queue.packet_cycles;
+        queue.most = std::max(queue.most, wires_[i]->queue.most);
+      }
+      out.links.push_back({wire.from.value, wire.to.value, {moved.busy, moved.stalled}, queue});
+      out.link_packets.push_back(moved.packets);
+      out.hops += moved.packets;
     }
     return out;
   }
@@ -173,7 +187,8 @@ class TrafficRun {
   FlowRules flow_;
   TrafficPlan plan_;
   ChannelList channels_;
-  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires()
+  std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires(), each with its virtual channels
+  std::vector<std::size_t> first_wire_;                       // by link, and behind the last
   std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;    // beside them
   std::vector<std::unique_ptr<TrafficAgent>> nodes_;          // resources, then routers
 };
@@ -183,7 +198,11 @@ class TrafficRun {
 }  // namespace cycle
 
 TrafficResult run_traffic(const Config& config, const RunOptions& options) {
-  return cycle::TrafficRun(config, options).run();
+  if (config.topology.shape != TopologyShape::kHierarchical) return cycle::TrafficRun(config, options).run();
+  // Its lines and the ring of its bridges are a graph, through which packets with one destination find their way.
+  Config drawn = config;
+  drawn.topology = draw_shape(config.topology).config;
+  return cycle::TrafficRun(drawn, options).run();
 }
 
 }  // namespace carousel::ringbus

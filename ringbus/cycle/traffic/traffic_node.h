@@ -52,7 +52,10 @@ class TrafficNode final : public TrafficAgent {
   Cycle next_after_run() const override { return next_; }
   std::string describe() const override;
 
-  const Out& out(std::size_t port) const override { return ways_[port].out; }
+  Moved moved(std::size_t port) const override {
+    const Out& out = ways_[port].out;
+    return {out.packets(), out.busy(), out.stalled()};
+  }
   TrafficOffered offered() const override {
     const std::uint64_t packets = queues_.offered(), routers = queues_.routers();
     return {packets, routers, (routers - packets) * link_latency_ + packets * (flits_ - 1u)};
@@ -70,7 +73,7 @@ class TrafficNode final : public TrafficAgent {
   void advance(Cycle end);
   void pass_marks(Cycle end);
   Cycle busy_before(std::size_t port, std::size_t i) const {
-    return i < marks_passed_ ? ways_[port].busy[i] : out(port).busy(mark(i));
+    return i < marks_passed_ ? ways_[port].busy[i] : ways_[port].out.busy(mark(i));
   }
   Cycle next_here() const;
   Cycle next_injection() const;

@@ -16,6 +16,7 @@ struct TrafficNodeSettings {
   std::uint32_t packet_bytes = 1;
   std::uint16_t flits = 1;   ///< flits of a packet
   bool shared_queue = true;  ///< the source has one queue for all packets
+  std::uint16_t pieces = 1;  ///< in which a packet goes from node to node: its flits, or the packet
 };
 
 inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, const LinkConfig& link) {
@@ -26,7 +27,8 @@ inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, c
           static_cast<std::uint32_t>(traffic.packet_bytes),
           static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(traffic.packet_bytes),
                                               static_cast<std::uint64_t>(link.bytes_per_cycle))),
-          traffic.source_queues == TrafficConfig::SourceQueues::kShared};
+          traffic.source_queues == TrafficConfig::SourceQueues::kShared,
+          1};
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -14,6 +14,8 @@ struct TrafficToken {
   std::uint16_t link_cycles = 1;  ///< its flits: the cycles for which it occupies a link
   std::uint16_t hops = 0;         ///< links that it crosses in all
   std::uint16_t stop = 0;         ///< its destination, where packets are routed
+  std::uint16_t channel = 0;      ///< class of the channel that it takes on its link
+  std::uint16_t behind = 0;       ///< of a flit: those of its packet that come after it
 };
 
 /// A packet has been delivered; its source may have another one on the way.
