@@ -88,7 +88,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "never comes there: it goes round past r["},
         BadConfig{
             "NoLink", "  routes: given\n  ways: [{along: 'r[0], r[2]'}]\n",
-            "test.yaml:8:19: topology.ways.0.along: expected nodes with a link between them, found r[0] and r[2]"},
+            "test.yaml:8:18: topology.ways.0.along: expected nodes with a link between them, found r[0] and r[2]"},
         BadConfig{"Unknown", "  routes: given\n  ways: [{along: 'r[0], q[2]'}]\n",
                   "topology.ways.0.along: expected a node, found 'q'"},
         BadConfig{"Contradiction",
