@@ -75,6 +75,8 @@ std::vector<Factor> network() {
         R"([{"from": "r[*]", "to": "x", "both": true, "bytes_per_cycle": 8},
             {"line": "r[0..3]", "both": true, "depth": 2}])"},
        {"topology.shape=graph"}},
+      {"topology.routes", {"shortest", "up_down"}, {"topology.shape=graph"}},
+      {"topology.tour", all<Tour>(), {"topology.shape=graph"}},
       {"topology.form", all<CentralForm>(), {"topology.shape=central"}},
       {"testers.distributor.testers", {"1", "5"}, {"topology.form=distributor"}},
       {"testers.distributor.queue", {"1", "4"}, {"topology.form=distributor"}},

@@ -35,12 +35,18 @@ class RandomGraph {
   }
 
   std::size_t nodes() const { return links_of_.size(); }
-  /// The lists `nodes` and `links` of a configuration, of resources called r[0] and on.
-  std::string text() const {
-    std::string out = fmt::format("  nodes: [{{name: r, count: {}}}]\n  links:\n", nodes());
+  /// The lists `nodes` and `links` of a configuration. The last nodes are as many routers, which have the keys given.
+  std::string text(std::size_t routers = 0, const std::string& keys = "") const {
+    const std::size_t resources = nodes() - routers;
+    std::string out = fmt::format("  nodes:\n    - {{name: r, count: {}}}\n", resources);
+    if (routers > 0) out += fmt::format("    - {{name: x, kind: router, count: {}{}}}\n", routers, keys);
+    out += "  links:\n";
+    const auto name = [&](std::uint64_t node) {
+      return node < resources ? fmt::format("r[{}]", node) : fmt::format("x[{}]", node - resources);
+    };
     for (const Link& link : links_)
-      out += fmt::format("    - {{from: 'r[{}]', to: 'r[{}]', latency_cycles: {}, both: true}}\n", link.from, link.to,
-                         link.latency);
+      out += fmt::format("    - {{from: '{}', to: '{}', latency_cycles: {}, both: true}}\n", name(link.from),
+                         name(link.to), link.latency);
     return out;
   }
   std::uint64_t draw(std::uint64_t many) {
