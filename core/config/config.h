@@ -53,6 +53,7 @@ struct Config {
   CameraConfig camera;
   ImageConfig image;
   EngineConfig engine;
+  ClocksConfig clocks;
   TopologyConfig topology;
   RaysConfig rays;
   PacketsConfig packets;
@@ -106,6 +107,7 @@ void describe(V& v, Config& c) {
   v.section("camera", c.camera, "The place, the view and the lens of the camera.");
   v.section("image", c.image, "The picture and its paths.");
   v.section("engine", c.engine, "The engine that simulates the machine.");
+  v.section("clocks", c.clocks, "The clocks of the resources and of the network between them.");
   v.section("topology", c.topology, "The resources and their links.");
   v.section("rays", c.rays, "The storage of rays.");
   v.section("packets", c.packets, "The packets that travel.");

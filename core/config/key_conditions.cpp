@@ -39,7 +39,11 @@ constexpr Row kRows[] = {
     {"image.exposure", kPicture},
     {"image.files", kPicture},
     {"image.seed", kDrawn},
+    {"engine.threads", kSeveralParts},
     {"engine.clock_mhz", kClock},
+    {"clocks.core", kClock},
+    {"clocks.noc", kNetworkClock},
+    {"clocks.synchroniser_cycles", kTwoClocks},
     {"engine.what_if", kCycle},
     {"topology.resources", kFreeSize},
     {"topology.rings", kMultiRing},
@@ -47,8 +51,10 @@ constexpr Row kRows[] = {
     {"topology.form", kCentral},
     {"topology.visit", kTravel},
     {"topology.flow", kTravel},
+    {"topology.flow", kQueuedStops},
     {"topology.link.queue", kNative},
     {"topology.link.depth", kTravel},
+    {"topology.link.depth", kQueuedStops},
     {"topology.link.latency_cycles", kCycle},
     {"topology.link.bytes_per_cycle", kCycle},
     {"topology.overrides", kCycle},
@@ -211,6 +217,8 @@ constexpr Row kRows[] = {
     {"workload.traffic.hotspot", kTrafficHotspot},
     {"workload.traffic.hotspot_fraction", kTrafficHotspot},
     {"workload.traffic.burst_packets", kTrafficBursts},
+    {"workload.traffic.destinations", kTrafficAnywhere},
+    {"workload.traffic.serve_cycles", kReplies},
 };
 
 /// The keys that a workload without rays feels; its machine has no other parts.
@@ -223,6 +231,8 @@ constexpr std::string_view kOfTraffic[] = {"schema_version",
                                            "engine.kind",
                                            "engine.threads",
                                            "engine.memory_limit_mib",
+                                           "engine.clock_mhz",
+                                           "clocks",
                                            "topology.resources",
                                            "topology.shape",
                                            "topology.rings",
@@ -242,10 +252,17 @@ constexpr std::string_view kOfTraffic[] = {"schema_version",
                                            "workload",
                                            "vary",
                                            "verify"};
-constexpr std::string_view kOfMemoryTrace[] = {
-    "schema_version", "engine.kind", "engine.memory_limit_mib",    "engine.clock_mhz",
-    "memory.dram",    "workload",    "memory.dram_latency_cycles", "memory.dram_bytes_per_cycle",
-    "vary",           "verify"};
+constexpr std::string_view kOfMemoryTrace[] = {"schema_version",
+                                               "engine.kind",
+                                               "engine.memory_limit_mib",
+                                               "engine.clock_mhz",
+                                               "memory.dram",
+                                               "workload",
+                                               "memory.dram_latency_cycles",
+                                               "memory.dram_bytes_per_cycle",
+                                               "clocks.core",
+                                               "vary",
+                                               "verify"};
 constexpr Workloads kWithoutRays[] = {{Workload::kTraffic, "synthetic traffic does not meet it", kOfTraffic},
                                       {Workload::kMemoryTrace, "requests to memory do not meet it", kOfMemoryTrace}};
 

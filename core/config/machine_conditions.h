@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/config/config.h"
+#include "core/config/graph/ring.h"
 #include "core/config/key_conditions.h"
 
 // The conditions under which parts of a machine are in use, for the table of key_conditions.cpp.
@@ -83,6 +84,28 @@ inline constexpr Condition kTrafficHotspot{
 inline constexpr Condition kTrafficBursts{
     [](const C& c, const S&) { return c.workload.traffic.pattern == TrafficConfig::Pattern::kBursty; },
     "the traffic has no bursts"};
+inline constexpr Condition kTrafficAnywhere{[](const C& c, const S&) {
+                                              using enum TrafficConfig::Pattern;
+                                              const TrafficConfig::Pattern pattern = c.workload.traffic.pattern;
+                                              return pattern == kUniform || pattern == kBursty || pattern == kHotspot;
+                                            },
+                                            "the pattern names each packet's destination"};
+inline constexpr Condition kReplies{[](const C& c, const S&) { return c.workload.traffic.reply_bytes > 0; },
+                                    "packets call for no answers"};
+inline constexpr Condition kQueuedStops{
+    [](const C& c, const S&) { return !config::stop_ring_entry(c.topology).has_value(); },
+    "nothing waits on a ring with stops"};
+inline constexpr Condition kSeveralParts{
+    [](const C& c, const S&) { return !config::stop_ring_entry(c.topology).has_value(); },
+    "the stops of a ring are clocked together, on one thread"};
+inline constexpr Condition kNetworkClock{[](const C& c, const S&) {
+                                           return c.workload.kind == Workload::kTraffic &&
+                                                  c.topology.shape == TopologyShape::kGraph;
+                                         },
+                                         "the network has the clock of the resources"};
+inline constexpr Condition kTwoClocks{
+    [](const C& c, const S&) { return c.clocks.noc.value_or(c.engine.clock_mhz) != c.engine.clock_mhz; },
+    "the network has the clock of the resources"};
 inline constexpr Condition kSeededScene{
     [](const C& c, const S&) { return c.scene.builtin && !is_generated(c, BuiltinScene::kCornell); },
     "the scene is not drawn at random"};

@@ -33,6 +33,12 @@ struct EngineConfig {
   bool what_if = true;
 };
 
+/// The clocks of the machine: of the resources, and of the network between them.
+struct ClocksConfig {
+  std::optional<std::int64_t> core, noc;  ///< MHz
+  std::int64_t synchroniser_cycles = 2;
+};
+
 namespace config {
 
 template <class V>
@@ -57,6 +63,18 @@ void describe(V& v, EngineConfig& c) {
       "what_if", c.what_if, "",
       "The cycle engine finds the bottleneck: it simulates a part of the rays again, each time with one class of parts "
       "relaxed.");
+}
+
+template <class V>
+void describe(V& v, ClocksConfig& c) {
+  v.field_or_auto("core", c.core, IntRange{1, 100'000}, "MHz",
+                  "The clock of the resources, which is engine.clock_mhz by another name; auto is that.");
+  v.field_or_auto("noc", c.noc, IntRange{1, 100'000}, "MHz",
+                  "The clock of links, routers and stops of a graph with synthetic traffic; auto is that of the "
+                  "resources.");
+  v.field("synchroniser_cycles", c.synchroniser_cycles, IntRange{0, 1000}, "cycles",
+          "The time, by the clock that is entered, from the first edge after a packet has come from the other clock "
+          "until it is there. Equal clocks have no synchroniser.");
 }
 
 }  // namespace config

@@ -110,6 +110,26 @@ struct GridSize {
   friend bool operator==(const GridSize&, const GridSize&) = default;
 };
 
+/// The stops of a drawn ring: what happens where a packet gets onto the ring, passes, and leaves it.
+struct RingStops {
+  enum class Rule { kQueues, kSlots, kGrants } rule = Rule::kQueues;
+  std::int64_t rings = 1;
+  std::optional<std::int64_t> port_bytes_per_cycle;
+  std::int64_t fair_after_cycles = 0;
+  std::int64_t grant_cycles = 1;
+  std::int64_t command_cycles = 0;
+  std::int64_t start_cycles = 1;
+  std::optional<std::int64_t> transfers;
+
+  friend bool operator==(const RingStops&, const RingStops&) = default;
+};
+
+template <>
+inline constexpr auto kEnumNames<RingStops::Rule> = [] {
+  using enum RingStops::Rule;
+  return names<RingStops::Rule>({{kQueues, "queues"}, {kSlots, "slots"}, {kGrants, "grants"}});
+}();
+
 /// A link of the graph, or a pattern of links that are alike.
 struct GraphLink {
   static constexpr std::string_view kRequired = "";
@@ -120,6 +140,7 @@ struct GraphLink {
   bool both = false, dateline = false;
   std::optional<std::int64_t> latency_cycles, bytes_per_cycle, depth, virtual_channels;
   std::vector<Carried> carries{Carried::kPackets};
+  RingStops stops;
 
   friend bool operator==(const GraphLink&, const GraphLink&) = default;
 };
@@ -168,6 +189,27 @@ void describe(V& v, GraphNode& c) {
 }
 
 template <class V>
+void describe(V& v, RingStops& c) {
+  v.choice("rule", c.rule,
+           "Packets wait in queues at the nodes of the ring. Or they ride in slots that nothing holds up, and get on "
+           "where a free slot passes. Or an arbiter grants a packet its whole way.");
+  v.field("rings", c.rings, IntRange{1, 16}, "rings",
+          "The rings side by side in each direction, with slots or grants.");
+  v.field_or_auto("port_bytes_per_cycle", c.port_bytes_per_cycle, IntRange{1, 65536}, "bytes/cycle",
+                  "The width of a stop's port to the rings, and of that from them; auto is the width of a ring.");
+  v.field("fair_after_cycles", c.fair_after_cycles, IntRange{0, 1'000'000'000}, "cycles",
+          "The wait after which a stop reserves the next slot, or gets the next grant of all; 0 is never, and then a "
+          "stop may wait for ever.");
+  v.field("grant_cycles", c.grant_cycles, IntRange{0, 1'000'000}, "cycles",
+          "The time from a request of a stop, with grants, until the arbiter can have granted it.");
+  v.field("command_cycles", c.command_cycles, IntRange{0, 1'000'000}, "cycles",
+          "The time between two grants of all stops and rings, as a command bus admits them; 0 is no such bus.");
+  v.field("start_cycles", c.start_cycles, IntRange{1, 1'000'000}, "cycles", "The time between two grants on one ring.");
+  v.field_or_auto("transfers", c.transfers, IntRange{1, 65536}, "packets",
+                  "The packets that stops may be putting onto one ring at a time, with grants; auto is any number.");
+}
+
+template <class V>
 void describe(V& v, GraphLink& c) {
   v.field("from", c.from, "", "The node that it leaves, or several, such as r[*] or r[0..3].");
   v.field("to", c.to, "", "The node to which it leads. Of several on both sides, each goes with its fellow.");
@@ -196,6 +238,7 @@ void describe(V& v, GraphLink& c) {
   v.field("dateline", c.dateline, "",
           "Under topology.channels: dateline, a packet that goes on by this link takes a channel of the next class. If "
           "no link says so, they are chosen so that they break every circle.");
+  v.section("stops", c.stops, "The stops of a ring that is the whole network, for synthetic traffic.");
 }
 
 }  // namespace config

@@ -8,7 +8,7 @@
 namespace carousel {
 
 struct TrafficConfig {
-  enum class Pattern { kUniform, kTornado, kNeighbour, kHotspot, kBursty } pattern = Pattern::kUniform;
+  enum class Pattern { kUniform, kTornado, kNeighbour, kHotspot, kBursty, kExchange } pattern = Pattern::kUniform;
   enum class SourceQueues { kShared, kPerDirection } source_queues = SourceQueues::kShared;
   double rate = 0.1;
   std::int64_t packets = 100000;
@@ -18,6 +18,8 @@ struct TrafficConfig {
   std::int64_t hotspot = 0;
   double hotspot_fraction = 0.25;
   std::int64_t burst_packets = 8;
+  std::string sources, destinations;  ///< nodes of a graph; empty: all resources
+  std::int64_t reply_bytes = 0, serve_cycles = 0;
 };
 
 template <>
@@ -27,7 +29,8 @@ inline constexpr auto kEnumNames<TrafficConfig::Pattern> = [] {
                                         {kTornado, "tornado"},
                                         {kNeighbour, "neighbour"},
                                         {kHotspot, "hotspot"},
-                                        {kBursty, "bursty"}});
+                                        {kBursty, "bursty"},
+                                        {kExchange, "exchange"}});
 }();
 
 template <>
@@ -65,6 +68,15 @@ void describe(V& v, TrafficConfig& c) {
           "The part of the packets that goes to the hotspot. The rest goes anywhere.");
   v.field("burst_packets", c.burst_packets, IntRange{1, 1'000'000}, "packets",
           "The mean number of packets of a burst, which are created in successive cycles.");
+  v.field("sources", c.sources, "",
+          "The nodes of a graph that create packets, such as r[0..3]; empty is all resources.");
+  v.field("destinations", c.destinations, "",
+          "The nodes of a graph to which uniform packets go, such as r[4]; empty is all resources.");
+  v.field("reply_bytes", c.reply_bytes, IntRange{0, 65535}, "bytes",
+          "The size of the answer that a packet on a ring with stops calls for; 0 is none. A packet is delivered when "
+          "its answer is.");
+  v.field("serve_cycles", c.serve_cycles, IntRange{0, 1'000'000}, "cycles",
+          "The time from the arrival of a packet to the departure of its answer.");
 }
 
 }  // namespace config

@@ -235,10 +235,12 @@ class Drawing {
                                         "twice as wide for example",
                                         name(from), name(to), known->second));
     const LinkConfig& all = config_.link;
-    graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
-                            link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
-                            link.virtual_channels.value_or(all.virtual_channels), entry_, link.dateline, link.carries});
-    std::ranges::sort(graph_.links.back().carries);
+    std::vector<Carried> carries = link.carries;
+    std::ranges::sort(carries);
+    for (std::int64_t ring = 0; ring < link.stops.rings; ++ring)
+      graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
+                              link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
+                              link.virtual_channels.value_or(all.virtual_channels), entry_, link.dateline, carries});
   }
 
   const TopologyConfig& config_;

@@ -41,8 +41,12 @@ TestersConfig read_base_testers(const config::Node& root) {
 }
 
 /// A shape may imply a value where the file says nothing: point_to_point has no other visits than those of owners, a
-/// graph would hardly have, and its nodes are its resources, by whose names overrides may go.
+/// graph would hardly have, and its nodes are its resources, by whose names overrides may go. The clock of the resources
+/// has two names.
 void imply(const config::Node& root, Config& config) {
+  const config::Node* engine = root.find("engine");
+  if (config.clocks.core && (engine == nullptr || engine->find("clock_mhz") == nullptr))
+    config.engine.clock_mhz = *config.clocks.core;
   const config::Node* topology = root.find("topology");
   const bool graph = config.topology.shape == TopologyShape::kGraph;
   if ((graph || config.topology.shape == TopologyShape::kPointToPoint) && topology->find("visit") == nullptr)

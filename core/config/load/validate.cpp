@@ -44,6 +44,7 @@ class Rules {
     query_needs_a_file();
     hashed_homes_spill();
     config::check_graph(c, breach);
+    config::check_rings(c, breach);
     config::check_network(c, options_.force, breach);
     config::check_ranks(c, breach);
     sampling_fits();

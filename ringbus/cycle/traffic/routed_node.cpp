@@ -70,12 +70,13 @@ void RoutedNode::create() {
   const std::uint16_t hops = topology_.route(id_, to, 0).hops;
   source_.next.token = {created, static_cast<std::uint16_t>(id_.value), 0, settings_.flits,
                         hops,    static_cast<std::uint16_t>(to.value),  0, 0};
-  source_.next.ready = created + settings_.inject_cycles;
-  if (before != kNever) source_.next.ready = std::max(source_.next.ready, before + settings_.flits);
+  const Cycle there = settings_.clock.enter(created + settings_.inject_cycles);
+  source_.next.ready = there;
+  if (before != kNever) source_.next.ready = std::max(there, before + settings_.flits);
   if (created < window_.begin) return;
   ++offered_.packets;
   offered_.routers += hops + 1u;
-  offered_.travel += alone(to);
+  offered_.travel += settings_.clock.leave(there + alone(to)) - created - settings_.inject_cycles;
 }
 
 /// Puts the packets that have left the source by `now` into its queues, as far as these have places.
@@ -100,7 +101,7 @@ void RoutedNode::fill_source(Cycle now) {
   }
 }
 
-/// Cycles of a packet's way if no other is on it.
+/// Cycles of a packet's way if no other is on it, by the clock of the network.
 Cycle RoutedNode::alone(ResourceId to) const {
   if (to == id_) return settings_.flits - 1u;
   Cycle sum = 0;

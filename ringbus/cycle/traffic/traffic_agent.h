@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -25,7 +26,10 @@ class TrafficAgent : public Agent {
   using In = InPortOf<TrafficToken>;
   using Out = OutPortOf<TrafficToken>;
 
-  TrafficAgent(const TrafficNodeSettings& settings, TrafficWindow window) : window_(window), sink_(settings, window) {}
+  TrafficAgent(const TrafficNodeSettings& settings, TrafficWindow window)
+      : window_(window),
+        marks_{settings.clock.to_network(window.begin), settings.clock.to_network(window.end)},
+        sink_(settings, window) {}
 
   const TrafficSink& sink() const { return sink_; }
   virtual TrafficOffered offered() const = 0;
@@ -39,9 +43,11 @@ class TrafficAgent : public Agent {
   virtual Cycle busy_in_window(std::size_t port) const = 0;
 
  protected:
-  Cycle mark(std::size_t i) const { return i == 0 ? window_.begin : window_.end; }
+  /// The ends of the window by the clock of the network.
+  Cycle mark(std::size_t i) const { return marks_[i]; }
 
   TrafficWindow window_;
+  std::array<Cycle, 2> marks_;
   TrafficSink sink_;
 };
 

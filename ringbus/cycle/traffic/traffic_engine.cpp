@@ -20,7 +20,7 @@ namespace cycle {
 
 namespace {
 
-/// Builds the nodes of a network and the links between them, and runs them.
+/// Builds the nodes of a network and the links between them, and runs them. Its time is that of the network's clock.
 class TrafficRun {
  public:
   TrafficRun(const Config& config, const RunOptions& options)
@@ -28,7 +28,9 @@ class TrafficRun {
         options_(options),
         topology_(config.topology),
         flow_(config.topology.flow, topology_.direct() || topology_.routed()),
-        plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources()) {
+        ends_(traffic_ends(config.topology, config.workload.traffic)),
+        plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ends_),
+        clock_(network_clock(config.clocks, config.engine.clock_mhz)) {
     const TrafficConfig& traffic = config.workload.traffic;
     const auto width = static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle);
     const MessageKind packets = channels_.carry({"packets", "resources", "neighbours", "links", width},
@@ -45,15 +47,15 @@ class TrafficRun {
         acks_.push_back(std::make_unique<Channel<TrafficAck>>(channels_.at(deliveries, ends)));
     }
     first_wire_.push_back(wires_.size());
-    TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
+    TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link, clock_);
     if (topology_.routed()) {
       if (topology_.flits_apart()) settings.pieces = settings.flits;
       add_routed(settings);
       return;
     }
     for (std::uint32_t r = 0; r < topology_.resources(); ++r) {
-      TrafficSource source(traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ResourceId(r),
-                           plan_.gap);
+      TrafficSource source(traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ends_,
+                           ResourceId(r), plan_.gap);
       nodes_.push_back(std::make_unique<TrafficNode>(ResourceId(r), topology_, flow_, settings, std::move(source),
                                                      plan_.packets[r], plan_.window, ports_of(ResourceId(r))));
     }
@@ -73,7 +75,8 @@ class TrafficRun {
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
         last_report = now;
-        const double done = std::min(1.0, static_cast<double>(reached) / static_cast<double>(plan_.window.end));
+        const auto all = static_cast<double>(clock_.to_network(plan_.window.end));
+        const double done = std::min(1.0, static_cast<double>(reached) / all);
         options_.progress(static_cast<std::uint64_t>(done * static_cast<double>(config_.workload.traffic.packets)));
       }
       return !stopped;
@@ -98,7 +101,7 @@ class TrafficRun {
     for (std::uint32_t n = 0; n < resources + topology_.hubs().size(); ++n) {
       std::optional<TrafficSource> source;
       if (n < resources)
-        source.emplace(config_.workload.traffic, static_cast<std::uint64_t>(config_.image.seed), resources,
+        source.emplace(config_.workload.traffic, static_cast<std::uint64_t>(config_.image.seed), resources, ends_,
                        ResourceId(n), plan_.gap);
       RoutedNode::Ports ports;
       for (const std::uint32_t i : topology_.ports(ResourceId(n)).in) {
@@ -151,6 +154,7 @@ class TrafficRun {
     TrafficResult out;
     out.window_begin = plan_.window.begin;
     out.window_end = plan_.window.end;
+    out.network_window = clock_.to_network(out.window_end) - clock_.to_network(out.window_begin);
     out.packets = static_cast<std::uint64_t>(config_.workload.traffic.packets);
     out.flits = traffic_node_settings(config_.workload.traffic, config_.topology.link).flits;
     for (const auto& node : nodes_) {
@@ -159,11 +163,12 @@ class TrafficRun {
       out.delivered += node->sink().delivered();
       out.offered += offered.packets;
       out.accepted += node->sink().accepted();
-      out.accepted_hops += node->sink().accepted_hops();
+      out.accepted_flit_hops += node->sink().accepted_hops() * out.flits;
       out.routers += offered.routers;
       out.travel += offered.travel;
       out.latency.add(node->sink().latency());
     }
+    out.network_cycles = clock_.to_network(out.cycles);
     for (const Topology::Wire& wire : topology_.wires()) {
       const TrafficAgent& node = *nodes_[wire.from.value];
       const std::size_t exit = topology_.out_port_of(out.links.size());
@@ -176,7 +181,7 @@ class TrafficRun {
       }
       out.links.push_back({wire.from.value, wire.to.value, {moved.busy, moved.stalled}, queue});
       out.link_packets.push_back(moved.packets);
-      out.hops += moved.packets;
+      out.flit_hops += moved.packets * out.flits;
     }
     return out;
   }
@@ -185,7 +190,9 @@ class TrafficRun {
   const RunOptions& options_;
   Topology topology_;
   FlowRules flow_;
+  TrafficEnds ends_;
   TrafficPlan plan_;
+  ClockRatio clock_;
   ChannelList channels_;
   std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires(), each with its virtual channels
   std::vector<std::size_t> first_wire_;                       // by link, and behind the last

@@ -4,25 +4,26 @@
 
 namespace carousel::ringbus::cycle {
 
-TrafficPlan::TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources)
+TrafficPlan::TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources,
+                         const TrafficEnds& ends)
     : gap(traffic_gap(traffic)), packets(resources) {
   std::vector<TrafficSource> sources;
-  for (std::uint32_t r = 0; r < resources; ++r) {
-    sources.emplace_back(traffic, seed, resources, ResourceId(r), gap);
+  for (const std::uint32_t r : ends.sources) {
+    sources.emplace_back(traffic, seed, resources, ends, ResourceId(r), gap);
     sources.back().advance();
   }
   std::uint64_t left = static_cast<std::uint64_t>(traffic.packets);
-  const auto count = [&](std::size_t r) {
-    ++packets[r];
+  const auto count = [&](std::size_t i) {
+    ++packets[ends.sources[i]];
     --left;
-    sources[r].advance();
+    sources[i].advance();
   };
   // A source creates a packet a cycle at most, so all may run for so long and at least the last packet is left, which
   // ends the window.
-  for (Cycle at = 0; left > resources;) {
-    at += (left - 1) / resources;
-    for (std::size_t r = 0; r < resources; ++r)
-      while (sources[r].created() <= at) count(r);
+  for (Cycle at = 0; left > sources.size();) {
+    at += (left - 1) / sources.size();
+    for (std::size_t i = 0; i < sources.size(); ++i)
+      while (sources[i].created() <= at) count(i);
   }
   while (left > 0) {
     const auto next =

@@ -17,7 +17,7 @@ struct TrafficWindow {
 /// workload.traffic.packets, so the load is the same until then. Sources do not depend on the network, so this is known
 /// beforehand.
 struct TrafficPlan {
-  TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources);
+  TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources, const TrafficEnds& ends);
 
   GeometricGap gap;
   std::vector<std::uint64_t> packets;  ///< by resource

@@ -2,9 +2,11 @@
 
 #include <cstdint>
 
+#include "core/config/fields/engine.h"
 #include "core/config/fields/topology.h"
 #include "core/config/fields/workload.h"
 #include "ringbus/time/clock.h"
+#include "ringbus/time/clock_ratio.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -17,9 +19,16 @@ struct TrafficNodeSettings {
   std::uint16_t flits = 1;   ///< flits of a packet
   bool shared_queue = true;  ///< the source has one queue for all packets
   std::uint16_t pieces = 1;  ///< in which a packet goes from node to node: its flits, or the packet
+  ClockRatio clock = {};     ///< of the network, by which all but creation and delivery goes
 };
 
-inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, const LinkConfig& link) {
+/// `core_mhz`: engine.clock_mhz.
+inline ClockRatio network_clock(const ClocksConfig& clocks, std::int64_t core_mhz) {
+  return {core_mhz, clocks.noc.value_or(core_mhz), clocks.synchroniser_cycles};
+}
+
+inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, const LinkConfig& link,
+                                                 ClockRatio clock = {}) {
   return {static_cast<Cycle>(traffic.inject_cycles),
           static_cast<Cycle>(traffic.eject_cycles),
           static_cast<Cycle>(link.latency_cycles),
@@ -28,7 +37,8 @@ inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, c
           static_cast<std::uint16_t>(ceil_div(static_cast<std::uint64_t>(traffic.packet_bytes),
                                               static_cast<std::uint64_t>(link.bytes_per_cycle))),
           traffic.source_queues == TrafficConfig::SourceQueues::kShared,
-          1};
+          1,
+          clock};
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "core/numeric/latency_histogram.h"
@@ -10,11 +11,12 @@
 
 namespace carousel::ringbus::cycle {
 
-/// The sink of a node. One flit a cycle gets out to it, and it counts the packets that it is given.
+/// The sink of a node. One flit a cycle gets out to it, by the clock of the network, and it counts the packets that it
+/// is given, by the clock of the resources.
 class TrafficSink {
  public:
   TrafficSink(const TrafficNodeSettings& settings, TrafficWindow window)
-      : eject_cycles_(settings.eject_cycles), flits_(settings.flits), window_(window) {}
+      : clock_(settings.clock), eject_cycles_(settings.eject_cycles), flits_(settings.flits), window_(window) {}
 
   /// Tells whether it takes a packet whose last flit comes at `tail`.
   bool open(Cycle tail) const { return free_ <= tail; }
@@ -23,13 +25,17 @@ class TrafficSink {
   /// Takes a packet; only when open.
   void deliver(const TrafficToken& token, Cycle tail) {
     free_ = tail + flits_;
-    last_ = tail + eject_cycles_;  // the sink's packets come one after the other
+    count(token, clock_.leave(tail) + eject_cycles_);
+  }
+  /// Counts a packet that is delivered at `at`.
+  void count(const TrafficToken& token, Cycle at) {
+    last_ = std::max(last_, at);
     ++delivered_;
-    if (last_ >= window_.begin && last_ < window_.end) {
+    if (at >= window_.begin && at < window_.end) {
       ++accepted_;
       accepted_hops_ += token.hops;
     }
-    if (token.created >= window_.begin) latency_.add(last_ - token.created);
+    if (token.created >= window_.begin) latency_.add(at - token.created);
   }
 
   const LatencyHistogram& latency() const { return latency_; }  ///< latency of measured packets delivered here
@@ -39,6 +45,7 @@ class TrafficSink {
   Cycle last() const { return last_; }                            ///< when something was last delivered
 
  private:
+  ClockRatio clock_;
   Cycle eject_cycles_;
   std::uint16_t flits_;
   TrafficWindow window_;

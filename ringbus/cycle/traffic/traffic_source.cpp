@@ -1,5 +1,9 @@
 #include "ringbus/cycle/traffic/traffic_source.h"
 
+#include <string>
+
+#include "core/config/graph/ring.h"
+
 namespace carousel::ringbus::cycle {
 
 namespace {
@@ -57,15 +61,22 @@ GeometricGap traffic_gap(const TrafficConfig& config) {
   return GeometricGap(config.rate / (static_cast<double>(config.burst_packets) * (1 - config.rate)));
 }
 
-TrafficSource::TrafficSource(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources, ResourceId id,
-                             const GeometricGap& gap)
+TrafficEnds traffic_ends(const TopologyConfig& topology, const TrafficConfig& traffic) {
+  std::string error;
+  return {config::named_resources(topology, traffic.sources, error),
+          config::named_resources(topology, traffic.destinations, error)};
+}
+
+TrafficSource::TrafficSource(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources,
+                             const TrafficEnds& ends, ResourceId id, const GeometricGap& gap)
     : pattern_(traffic.pattern),
       seed_(seed),
       id_(id.value),
       resources_(static_cast<std::uint32_t>(resources)),
       hotspot_(static_cast<std::uint32_t>(traffic.hotspot)),
       chance_(pattern_ == Pattern::kBursty ? 1 / static_cast<double>(traffic.burst_packets) : traffic.hotspot_fraction),
-      gap_(&gap) {}
+      gap_(&gap),
+      ends_(&ends) {}
 
 void TrafficSource::advance() {
   words_ = random_block({seed_, id_, static_cast<std::uint32_t>(index_), static_cast<std::uint32_t>(index_ >> 32)},
@@ -85,6 +96,8 @@ ResourceId TrafficSource::destination() const {
       return ResourceId((id_ + 1) % resources_);
     case Pattern::kHotspot:
       return unit(words_[2]) < chance_ ? hotspot_ : any();
+    case Pattern::kExchange:
+      return ResourceId(id_ ^ 1u);
     case Pattern::kUniform:
     case Pattern::kBursty:
       break;

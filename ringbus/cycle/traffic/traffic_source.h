@@ -2,7 +2,9 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
+#include "core/config/fields/topology.h"
 #include "core/config/fields/workload.h"
 #include "core/numeric/rng.h"
 #include "core/types/ids.h"
@@ -36,19 +38,26 @@ class GeometricGap {
 /// The gaps between the packets of one source; with bursts, the silences between bursts.
 GeometricGap traffic_gap(const TrafficConfig& config);
 
+/// The resources that create packets, and those to which packets without a destination of their own go.
+struct TrafficEnds {
+  std::vector<std::uint32_t> sources, destinations;
+};
+TrafficEnds traffic_ends(const TopologyConfig& topology, const TrafficConfig& traffic);
+
 /// The packets that one resource creates: their times and destinations. It knows nothing of the network, so the packets
 /// are the same in every network.
-///   uniform    to any resource, the source included
+///   uniform    to any resource of the destinations, the source included
 ///   tornado    almost half way round: (k + 1) / 2 - 1 on, of k (as BookSim2's)
 ///   neighbour  to the next one
 ///   hotspot    with `hotspot_fraction` to one resource, else uniform
 ///   bursty     uniform; packets are created cycle after cycle, then none for a while: a two-state Markov chain (as
 ///              BookSim2's on/off process with a rate of 1 when on)
+///   exchange   resources 2 i and 2 i + 1 to each other
 class TrafficSource {
  public:
-  /// `gap` is that of traffic_gap(), which all sources share; it must outlive them.
-  TrafficSource(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources, ResourceId id,
-                const GeometricGap& gap);
+  /// `gap` is that of traffic_gap(). All sources share it and `ends`, which must outlive them.
+  TrafficSource(const TrafficConfig& traffic, std::uint64_t seed, std::size_t resources, const TrafficEnds& ends,
+                ResourceId id, const GeometricGap& gap);
 
   /// Creates the next packet.
   void advance();
@@ -60,7 +69,8 @@ class TrafficSource {
 
  private:
   ResourceId any() const {
-    return ResourceId(static_cast<std::uint32_t>((std::uint64_t{words_[3]} * resources_) >> 32));
+    const std::vector<std::uint32_t>& to = ends_->destinations;
+    return ResourceId(to[(std::uint64_t{words_[3]} * to.size()) >> 32]);
   }
 
   TrafficConfig::Pattern pattern_;
@@ -69,6 +79,7 @@ class TrafficSource {
   ResourceId hotspot_;
   double chance_;  // bursty: that a burst ends; hotspot: that a packet goes there
   const GeometricGap* gap_;
+  const TrafficEnds* ends_;
   std::uint64_t index_ = 0;
   PhiloxCounter words_{};
   Cycle created_ = 0;

@@ -86,7 +86,8 @@ TEST(SourceQueues, SeveralReadTheSamePacketsAsOne) {
   const Config config = traffic_config(TopologyShape::kBidirectional, 8, TrafficConfig::Pattern::kUniform, 0.5, 800);
   const Topology topology(config.topology);
   const GeometricGap gap = traffic_gap(config.workload.traffic);
-  const TrafficSource source(config.workload.traffic, 1, 8, ResourceId(3), gap);
+  const TrafficEnds ends = traffic_ends(config.topology, config.workload.traffic);
+  const TrafficSource source(config.workload.traffic, 1, 8, ends, ResourceId(3), gap);
   std::vector<Cycle> created[2];
   for (const bool shared : {true, false}) {
     TrafficNodeSettings settings = traffic_node_settings(config.workload.traffic, config.topology.link);

@@ -76,9 +76,9 @@ TEST(Traffic, UseOfLinksLeavesTheWarmUpOut) {
     std::uint64_t flits = 0;
     for (const std::uint64_t busy : r.busy_in_window) flits += busy;
     // In the window of a steady network links move about what its packets need.
-    const double needed = static_cast<double>(r.accepted_hops * r.flits);
+    const double needed = static_cast<double>(r.accepted_flit_hops);
     EXPECT_NEAR(static_cast<double>(flits), needed, 0.02 * needed + 64) << warm_up;
-    return std::pair(flits, r.flit_hops());
+    return std::pair(flits, r.flit_hops);
   };
   const auto [all, moved] = flits_with(0);
   EXPECT_LE(all, moved);
@@ -169,11 +169,13 @@ std::uint64_t seed_of(const Config& c) {
 }
 
 cycle::TrafficPlan plan_of(const Config& c) {
-  return {c.workload.traffic, seed_of(c), static_cast<std::size_t>(c.topology.resources)};
+  return {c.workload.traffic, seed_of(c), static_cast<std::size_t>(c.topology.resources),
+          cycle::traffic_ends(c.topology, c.workload.traffic)};
 }
 
-cycle::TrafficSource source_of(const Config& c, ResourceId id, const cycle::GeometricGap& gap) {
-  return {c.workload.traffic, seed_of(c), static_cast<std::size_t>(c.topology.resources), id, gap};
+cycle::TrafficSource source_of(const Config& c, const cycle::TrafficEnds& ends, ResourceId id,
+                               const cycle::GeometricGap& gap) {
+  return {c.workload.traffic, seed_of(c), static_cast<std::size_t>(c.topology.resources), ends, id, gap};
 }
 
 TEST(TrafficPlan, SharesOutExactlyThePackets) {
@@ -250,7 +252,8 @@ TEST(TrafficSource, HotspotGetsItsShare) {
   c.workload.traffic.hotspot = 5;
   c.workload.traffic.hotspot_fraction = 0.25;
   const cycle::GeometricGap gap = cycle::traffic_gap(c.workload.traffic);
-  cycle::TrafficSource source = source_of(c, ResourceId(2), gap);
+  const cycle::TrafficEnds ends = cycle::traffic_ends(c.topology, c.workload.traffic);
+  cycle::TrafficSource source = source_of(c, ends, ResourceId(2), gap);
   std::array<int, 8> to{};
   for (int i = 0; i < 80000; ++i) {
     source.advance();
@@ -263,7 +266,8 @@ TEST(TrafficSource, BurstsAreAsLongAsAskedFor) {
   Config c = traffic_config(Shape::kRing, 8, Pattern::kBursty, 0.2, 1);
   c.workload.traffic.burst_packets = 20;
   const cycle::GeometricGap gap = cycle::traffic_gap(c.workload.traffic);
-  cycle::TrafficSource source = source_of(c, ResourceId(0), gap);
+  const cycle::TrafficEnds ends = cycle::traffic_ends(c.topology, c.workload.traffic);
+  cycle::TrafficSource source = source_of(c, ends, ResourceId(0), gap);
   int bursts = 0;
   for (int i = 0; i < 100000; ++i) {
     const Cycle before = source.created();

@@ -1,0 +1,138 @@
+#include <algorithm>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "core/config/graph/graph.h"
+#include "core/config/graph/ring.h"
+#include "core/config/load/network_rules.h"
+
+namespace carousel::config {
+
+namespace {
+
+bool has_traffic(const Config& config) {
+  return config.workload.kind == WorkloadConfig::Kind::kTraffic;
+}
+
+/// The keys of stops that the rule of the stops has.
+void check_stops(const RingStops& stops, const std::string& key, const RuleBreach& breach) {
+  const RingStops none;
+  const auto only = [&](bool differs, std::string_view name, std::string_view rules) {
+    if (differs)
+      breach(fmt::format("{}.{}", key, name), fmt::format("stops with rule: {} do not have this key; expected rule: "
+                                                          "{}, or none",
+                                                          enum_name(stops.rule), rules));
+  };
+  const bool queues = stops.rule == RingStops::Rule::kQueues, grants = stops.rule == RingStops::Rule::kGrants;
+  only(queues && stops.rings != none.rings, "rings", "slots or grants");
+  only(queues && stops.port_bytes_per_cycle.has_value(), "port_bytes_per_cycle", "slots or grants");
+  only(queues && stops.fair_after_cycles != none.fair_after_cycles, "fair_after_cycles", "slots or grants");
+  only(!grants && stops.grant_cycles != none.grant_cycles, "grant_cycles", "grants");
+  only(!grants && stops.command_cycles != none.command_cycles, "command_cycles", "grants");
+  only(!grants && stops.start_cycles != none.start_cycles, "start_cycles", "grants");
+  only(!grants && stops.transfers.has_value(), "transfers", "grants");
+}
+
+/// A ring with stops is the whole network, and nothing but synthetic traffic rides on it.
+void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  const GraphLink& link = c.links[entry];
+  const std::string key = fmt::format("topology.links.{}", entry);
+  const std::string_view rule = enum_name(link.stops.rule);
+  if (link.ring.empty())
+    return breach(key + ".stops.rule", fmt::format("only a ring has such stops; expected queues, found {}", rule));
+  if (!has_traffic(config))
+    breach(key + ".stops.rule",
+           fmt::format("a packet of rays waits at its stops until there are places, and nothing waits on such a ring; "
+                       "expected queues, or workload: traffic; found {}",
+                       rule));
+  if (link.depth)
+    breach(key + ".depth",
+           fmt::format("a ring with rule: {} holds a flit for each cycle of its latency and has no queues; expected "
+                       "auto, found {}",
+                       rule, *link.depth));
+  if (c.links.size() > 1)
+    return breach(fmt::format("topology.links.{}", entry == 0 ? 1 : 0),
+                  fmt::format("a ring with rule: {} is the whole network; expected no other links", rule));
+  std::vector<bool> on_ring(graph.nodes.size());
+  for (const Graph::Link& one : graph.links) on_ring[one.from] = true;
+  std::size_t stops = 0;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    stops += on_ring[i];
+    const Graph::Node& node = graph.nodes[i];
+    if (!on_ring[i])
+      breach(key + ".ring",
+             fmt::format("the ring is the whole network; expected all nodes, and {} is missing", node.name));
+    if (node.drawn->latency_cycles > 0)
+      breach(fmt::format("topology.nodes.{}.latency_cycles", node.entry),
+             fmt::format("nothing waits at a stop, whose time is that of the link behind it; expected 0, found {}",
+                         node.drawn->latency_cycles));
+  }
+  const std::size_t lanes = static_cast<std::size_t>(link.stops.rings) * (link.both ? 2 : 1);
+  if (stops < 3 || graph.links.size() != stops * lanes)
+    breach(key + ".ring", fmt::format("expected three nodes at least, each of them once, found {} nodes in {} steps",
+                                      stops, graph.links.size() / lanes));
+}
+
+void check_traffic_ends(const Config& config, const RuleBreach& breach) {
+  const TrafficConfig& traffic = config.workload.traffic;
+  const bool graph = config.topology.shape == TopologyShape::kGraph;
+  const auto check = [&](const char* key, const std::string& pattern) {
+    if (pattern.empty()) return;
+    if (!graph)
+      return breach(key, fmt::format("only the nodes of a graph have names; expected none, or topology.shape: graph; "
+                                     "found {}",
+                                     pattern));
+    std::string error;
+    if (named_resources(config.topology, pattern, error).empty()) breach(key, std::move(error));
+  };
+  check("workload.traffic.sources", traffic.sources);
+  check("workload.traffic.destinations", traffic.destinations);
+  if (traffic.pattern == TrafficConfig::Pattern::kExchange && config.topology.resources % 2 != 0)
+    breach("workload.traffic.pattern",
+           fmt::format("exchange pairs the resources; expected an even number of them, or another pattern, found {}",
+                       config.topology.resources));
+  if (traffic.reply_bytes > 0 && !stop_ring_entry(config.topology))
+    breach("workload.traffic.reply_bytes",
+           fmt::format("answers are modelled on a ring with stops; expected 0, or stops: {{rule: slots}} at the ring "
+                       "of a graph, found {}",
+                       traffic.reply_bytes));
+}
+
+void check_clocks(const Config& config, const RuleBreach& breach) {
+  const std::int64_t core = config.engine.clock_mhz;
+  if (config.clocks.core && *config.clocks.core != core)
+    breach("clocks.core", fmt::format("the clock of the resources is engine.clock_mhz; expected {}, or one of the two "
+                                      "keys, found {}",
+                                      core, *config.clocks.core));
+  const std::int64_t noc = config.clocks.noc.value_or(core);
+  if (noc == core) return;
+  if (!has_traffic(config))
+    breach("clocks.noc", fmt::format("packets of rays know one clock; expected {}, or auto, or workload: traffic; "
+                                     "found {}",
+                                     core, noc));
+  else if (config.topology.shape != TopologyShape::kGraph)
+    breach("clocks.noc", fmt::format("only a graph has a clock of its own; expected {}, or topology.shape: graph, as "
+                                     "check --graph writes it; found {}",
+                                     core, noc));
+}
+
+}  // namespace
+
+void check_rings(const Config& config, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  if (c.shape == TopologyShape::kGraph) {
+    for (std::size_t i = 0; i < c.links.size(); ++i)
+      check_stops(c.links[i].stops, fmt::format("topology.links.{}.stops", i), breach);
+    std::vector<GraphIssue> issues;
+    const Graph graph = draw_graph(c, issues);
+    if (const auto entry = stop_ring_entry(c); entry && issues.empty()) check_stop_ring(config, graph, *entry, breach);
+  }
+  if (has_traffic(config)) check_traffic_ends(config, breach);
+  check_clocks(config, breach);
+}
+
+}  // namespace carousel::config

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <numeric>
+
+#include "ringbus/time/clock.h"
+
+namespace carousel::ringbus {
+
+/// Two clocks, of the resources and of the network between them. They start with a common edge, and their edges are
+/// counted: as the ratio of their frequencies is a ratio of integers, the edge of one clock that follows an edge of the
+/// other is known exactly, however long a run takes.
+///
+/// What crosses from one clock to the other is taken over at the next edge of that one, which may be the same moment,
+/// and then goes through a synchroniser, so many cycles of it. Equal clocks have neither.
+class ClockRatio {
+ public:
+  ClockRatio() = default;
+  /// In MHz, from 1 on. Cycle counts up to 2^63 / 100,000 can be converted.
+  ClockRatio(std::int64_t core, std::int64_t network, std::int64_t synchroniser_cycles) {
+    const std::int64_t common = std::gcd(core, network);
+    core_ = static_cast<std::uint64_t>(core / common);
+    network_ = static_cast<std::uint64_t>(network / common);
+    synchroniser_ = core == network ? 0 : static_cast<Cycle>(synchroniser_cycles);
+  }
+
+  /// The first edge of the network's clock that is not before an edge of the resources', and the other way.
+  Cycle to_network(Cycle core) const { return ceil_div(core * network_, core_); }
+  Cycle to_core(Cycle network) const { return ceil_div(network * core_, network_); }
+  /// When something that a resource sends is there by the clock of the network, and the other way.
+  Cycle enter(Cycle core) const { return to_network(core) + synchroniser_; }
+  Cycle leave(Cycle network) const { return to_core(network) + synchroniser_; }
+
+ private:
+  std::uint64_t core_ = 1, network_ = 1;  // without a common divisor
+  Cycle synchroniser_ = 0;
+};
+
+}  // namespace carousel::ringbus

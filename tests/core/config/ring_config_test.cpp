@@ -1,0 +1,113 @@
+// Rings whose stops have no queues, the ends of synthetic traffic, and two clocks: what is read and what is refused.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "core/config/graph/ring.h"
+#include "core/config/write.h"
+#include "tests/core/config/bad_config.h"
+
+namespace carousel::ring_config_test {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+const std::string kHead = "engine: {kind: cycle}\n";
+const std::string kTraffic = "workload: {traffic: {rate: 0.1}}\n";
+
+/// A network of these links between three resources.
+std::string three(const std::string& links) {
+  return "topology:\n  shape: graph\n  nodes: [{name: r, count: 3}]\n  links:\n    - " + links + "\n";
+}
+
+TEST(RingConfig, RingsSideBySideAreLinksSideBySide) {
+  const Config config =
+      parse_config(kHead + kTraffic + three("{ring: 'r[*]', both: true, stops: {rule: slots, rings: 2}}"), "test.yaml");
+  std::vector<config::GraphIssue> issues;
+  const config::Graph graph = config::draw_graph(config.topology, issues);
+  ASSERT_TRUE(issues.empty());
+  std::vector<std::string> names;
+  for (const config::Graph::Link& link : graph.links) names.push_back(graph.name_of(link));
+  EXPECT_THAT(names,
+              ElementsAre("r[0] > r[1]", "r[0] > r[1]", "r[1] > r[0]", "r[1] > r[0]", "r[1] > r[2]", "r[1] > r[2]",
+                          "r[2] > r[1]", "r[2] > r[1]", "r[2] > r[0]", "r[2] > r[0]", "r[0] > r[2]", "r[0] > r[2]"));
+  const config::StopRing ring = config::stop_ring(config.topology, graph);
+  EXPECT_THAT(ring.nodes, ElementsAre(0, 1, 2));
+  EXPECT_EQ(graph.name_of(graph.links[ring.link(2, 1, 1)]), "r[0] > r[2]");
+  EXPECT_EQ(parse_config(resolved_yaml(config), "again.yaml").topology.links, config.topology.links);
+}
+
+TEST(RingConfig, TheClockOfTheResourcesHasTwoNames) {
+  const std::string machine = kTraffic + three("{line: 'r[*]', both: true}");
+  EXPECT_EQ(parse_config("engine: {kind: cycle}\nclocks: {core: 1500, noc: 2000}\n" + machine, "a").engine.clock_mhz,
+            1500);
+  EXPECT_EQ(parse_config("engine: {kind: cycle, clock_mhz: 700}\n" + machine, "a").engine.clock_mhz, 700);
+}
+
+class BadRing : public testing::TestWithParam<BadConfig> {};
+
+TEST_P(BadRing, IsRefusedByName) {
+  EXPECT_THAT(texts(issues_of(kHead + GetParam().text)), ElementsAre(HasSubstr(GetParam().message)));
+}
+
+const std::string kSlots = "{ring: 'r[*]', stops: {rule: slots}";
+const std::string kRayed = "scene: {builtin: cornell}\n" + three(kSlots + "}");
+const std::string kNoRing = kTraffic + three("{line: 'r[*]', both: true, stops: {rule: slots}}");
+const std::string kDeep = kTraffic + three(kSlots + ", depth: 4}");
+const std::string kTwo = kTraffic + three(kSlots + "}\n    - {from: 'r[0]', to: 'r[2]'}");
+const std::string kPart = kTraffic +
+                          "topology: {shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[0..2]', stops: "
+                          "{rule: slots}}]}\n";
+const std::string kLate = kTraffic +
+                          "topology: {shape: graph, nodes: [{name: r, count: 3, latency_cycles: 2}], links: [{ring: "
+                          "'r[*]', stops: {rule: slots}}]}\n";
+const std::string kPair = kTraffic +
+                          "topology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]', stops: {rule: "
+                          "slots}}]}\n";
+const std::string kQueues = kTraffic + three("{line: 'r[*]', both: true, stops: {rings: 2}}");
+const std::string kCommand = kTraffic + three("{ring: 'r[*]', stops: {rule: slots, command_cycles: 1}}");
+const std::string kNames = "workload: {traffic: {sources: 'r[0]'}}\n";
+const std::string kUnknown = "workload: {traffic: {destinations: 's[0]'}}\n" + three("{line: 'r[*]', both: true}");
+const std::string kOdd = "workload: {traffic: {pattern: exchange}}\n" + three("{line: 'r[*]', both: true}");
+const std::string kAnswer = "workload: {traffic: {reply_bytes: 64}}\n" + three("{line: 'r[*]', both: true}");
+const std::string kRayClock = "scene: {builtin: cornell}\nclocks: {noc: 2000}\n";
+const std::string kShapeClock = kTraffic + "topology: {flow: bubble}\nclocks: {noc: 2000}\n";
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadRing,
+    testing::Values(
+        BadConfig{"Rays", kRayed.c_str(),
+                  "test.yaml:7:36: topology.links.0.stops.rule: a packet of rays waits at its stops until there are "
+                  "places, and nothing waits on such a ring; expected queues, or workload: traffic; found slots"},
+        BadConfig{"NoRing", kNoRing.c_str(), "topology.links.0.stops.rule: only a ring has such stops"},
+        BadConfig{"Depth", kDeep.c_str(),
+                  "topology.links.0.depth: a ring with rule: slots holds a flit for each cycle"},
+        BadConfig{"TwoLinks", kTwo.c_str(), "topology.links.1: a ring with rule: slots is the whole network"},
+        BadConfig{"NotOnTheRing", kPart.c_str(), "topology.nodes.0: r[3] has no link"},
+        BadConfig{"NodeLatency", kLate.c_str(), "topology.nodes.0.latency_cycles: nothing waits at a stop"},
+        BadConfig{"TwoStops", kPair.c_str(), "expected three nodes at least, each of them once, found 2 nodes"},
+        BadConfig{"RingsWithQueues", kQueues.c_str(),
+                  "topology.links.0.stops.rings: stops with rule: queues do not have this key; expected rule: slots or "
+                  "grants"},
+        BadConfig{"CommandsWithSlots", kCommand.c_str(),
+                  "topology.links.0.stops.command_cycles: stops with rule: slots do not have this key; expected rule: "
+                  "grants"},
+        BadConfig{"NamesOfAShape", kNames.c_str(), "workload.traffic.sources: only the nodes of a graph have names"},
+        BadConfig{"UnknownDestination", kUnknown.c_str(),
+                  "workload.traffic.destinations: expected a node, found 's'; did you mean 'r[*]'?"},
+        BadConfig{"OddExchange", kOdd.c_str(), "workload.traffic.pattern: exchange pairs the resources"},
+        BadConfig{"AnswersWithQueues", kAnswer.c_str(),
+                  "workload.traffic.reply_bytes: answers are modelled on a ring with stops"},
+        BadConfig{"ClockOfRays", kRayClock.c_str(), "clocks.noc: packets of rays know one clock; expected 1000"},
+        BadConfig{"ClockOfAShape", kShapeClock.c_str(), "clocks.noc: only a graph has a clock of its own"}),
+    [](const auto& bad) { return std::string(bad.param.name); });
+
+TEST(RingConfig, OneClockHasOneValue) {
+  EXPECT_THAT(
+      texts(issues_of("engine: {kind: cycle, clock_mhz: 900}\nclocks: {core: 800}\nscene: {builtin: cornell}\n")),
+      ElementsAre(HasSubstr("test.yaml:2:16: clocks.core: the clock of the resources is engine.clock_mhz; "
+                            "expected 900, or one of the two keys, found 800")));
+}
+
+}  // namespace
+}  // namespace carousel::ring_config_test
