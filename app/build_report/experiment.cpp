@@ -25,13 +25,16 @@
 #include "app/run/ray_progress.h"
 #include "app/sampled/sampled_run.h"
 #include "app/trace/memory_csv.h"
+#include "core/config/graph/ring.h"
 #include "core/system/executor.h"
 #include "report/text/number_text.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/memory/memory_trace.h"
+#include "ringbus/cycle/rings/ring_engine.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
+#include "ringbus/cycle/traffic/traffic_settings.h"
 #include "ringbus/native/native_engine.h"
 
 namespace carousel::app {
@@ -112,7 +115,10 @@ report::Report run_network(const Prepared& p, const InterruptScope& interrupt, b
   options.progress = [&](std::uint64_t packets) {
     if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
   };
-  return traffic_report(p, ringbus::run_traffic(p.config(), options));
+  const Config& c = p.config();
+  if (!config::stop_ring_entry(c.topology)) return traffic_report(p, ringbus::run_traffic(c, options));
+  const auto clock = ringbus::cycle::network_clock(c.clocks, c.engine.clock_mhz);
+  return traffic_report(p, ringbus::run_ring_traffic(c.topology, c.workload.traffic, clock, c.image.seed, options));
 }
 
 report::Report play_requests(const Prepared& p, const InterruptScope& interrupt) {

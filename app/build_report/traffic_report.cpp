@@ -34,27 +34,42 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   out.routers_mean = result.routers_mean();
   out.zero_load_latency = result.zero_load_latency(config.workload.traffic);
   out.latency = report::latency_of(result.latency);
-  const std::uint64_t window = result.window_end - result.window_begin;
+  out.least_latency = result.latency.quantile(0);
+  const TrafficConfig& asked = config.workload.traffic;
+  const std::uint64_t window = result.network_window;
+  const double seconds = static_cast<double>(result.window_end - result.window_begin) /
+                         (static_cast<double>(config.engine.clock_mhz) * 1e6);
+  out.gigabytes_per_second =
+      ratio(static_cast<double>(result.accepted) * static_cast<double>(asked.packet_bytes + asked.reply_bytes),
+            seconds * 1e9);
   std::uint64_t busiest = 0;
   for (const std::uint64_t busy : result.busy_in_window) {
     out.flit_hops += busy;  // a flit a cycle
     busiest = std::max(busiest, busy);
   }
+  if (const auto& stops = result.stops)
+    out.stops = report::RingStopsUse{stops->extra_rounds, stops->longest_ride, stops->longest_wait, stops->reservations,
+                                     stops->starts};
   out.link_utilisation = {ratio(out.flit_hops, window * result.links.size()), ratio(busiest, window)};
   return out;
 }
 
 std::vector<report::Link> links(const Config& config, const ringbus::TrafficResult& result) {
   std::vector<report::Link> out;
+  // A link between stops holds a flit for each cycle of its latency.
+  const TopologyConfig& topology = config.topology;
+  const std::int64_t depth =
+      result.stops ? topology.links.front().latency_cycles.value_or(topology.link.latency_cycles) : topology.link.depth;
   for (std::size_t i = 0; i < result.links.size(); ++i) {
     const ringbus::cycle::LinkUse& link = result.links[i];
     report::Link& one = out.emplace_back();
     one.from = link.from;
     one.to = link.to;
-    one.depth = static_cast<std::uint64_t>(config.topology.link.depth);
+    one.depth = static_cast<std::uint64_t>(depth);
     one.packets = result.link_packets[i];
-    one.utilisation = ratio(link.use.busy, result.cycles);
-    one.cycles = report::LinkCycles{link.use.busy, link.use.stalled, result.cycles - link.use.busy - link.use.stalled};
+    const std::uint64_t cycles = result.network_cycles;
+    one.utilisation = ratio(link.use.busy, cycles);
+    one.cycles = report::LinkCycles{link.use.busy, link.use.stalled, cycles - link.use.busy - link.use.stalled};
   }
   return out;
 }

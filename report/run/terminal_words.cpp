@@ -292,9 +292,11 @@ std::vector<TerminalWord> words_of_traffic() {
   w.line("load")
       .item("N offered", "traffic.offered")
       .item("N accepted packets per resource and cycle", "traffic.accepted")
-      .item("N of the links' time", "traffic.accepted_of_links");
+      .item("N of the links' time", "traffic.accepted_of_links")
+      .item("N GB/s", "traffic.gigabytes_per_second");
   w.line("latency")
       .item("N mean", "traffic.latency.mean")
+      .item("N least", "traffic.least_latency")
       .item("N p50", "traffic.latency.p50")
       .item("N p95", "traffic.latency.p95")
       .item("N p99", "traffic.latency.p99")
@@ -304,6 +306,11 @@ std::vector<TerminalWord> words_of_traffic() {
       .item("N busy on average, N the busiest", "traffic.link_utilisation",
             "part of the window's cycles in which links moved flits")
       .item("N flit-hops", "traffic.flit_hops");
+  w.line("stops")
+      .item("N extra rounds", "traffic.stops.extra_rounds")
+      .item("N cycles the longest ride", "traffic.stops.longest_ride")
+      .item("N cycles the longest wait", "traffic.stops.longest_wait")
+      .item("N reservations", "traffic.stops.reservations");
   w.line("simulated").item("N cycles", "engine.cycles");
   w.line("host")
       .item("N to simulate on N threads", "host.wall_seconds")

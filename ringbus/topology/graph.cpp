@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/ring.h"
 #include "ringbus/topology/graph/channel_classes.h"
 #include "ringbus/topology/graph/dependencies.h"
 #include "ringbus/topology/graph/routes.h"
@@ -196,7 +197,10 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
     plan.hub_places.push_back(static_cast<std::uint32_t>(graph.nodes[i].drawn->buffers.value_or(0)));
   }
   plan.packets_in_flight = packets_in_flight(config);
-  VisitJudge(config, graph, routes, plan).judge();
+  if (const auto ring = config::stop_ring_entry(config))
+    plan.verdict = stop_ring_verdict(config.links[*ring].stops);
+  else
+    VisitJudge(config, graph, routes, plan).judge();
   return plan;
 }
 

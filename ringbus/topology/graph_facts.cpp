@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/ring.h"
 #include "core/system/error.h"
 #include "ringbus/topology/graph/channel_classes.h"
 #include "ringbus/topology/graph/dependencies.h"
@@ -83,8 +84,10 @@ GraphFacts graph_facts(const TopologyConfig& config) {
     }
   }
   std::uint32_t busiest = 0;
+  // Rings side by side share the ways between their stops.
   const auto load = [&](std::uint32_t link) {
-    return static_cast<double>(pairs[link]) / static_cast<double>(graph.links[link].bytes_per_cycle);
+    const std::int64_t rings = config.links[graph.links[link].entry].stops.rings;
+    return static_cast<double>(pairs[link]) / static_cast<double>(graph.links[link].bytes_per_cycle * rings);
   };
   const auto ends = [&](std::uint32_t link) { return std::tuple(graph.links[link].from, graph.links[link].to); };
   for (std::uint32_t link = 1; link < graph.links.size(); ++link)
@@ -97,7 +100,23 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   return facts;
 }
 
+DeadlockVerdict stop_ring_verdict(const RingStops& stops) {
+  const bool slots = stops.rule == RingStops::Rule::kSlots;
+  std::string rule =
+      slots ? "slots: nothing waits on the ring, and a flit that finds its port busy goes round again, which it does "
+              "for older ones alone"
+            : "grants: a packet starts when its whole way is free, the port at its end included, and nothing waits on "
+              "the ring";
+  if (stops.fair_after_cycles == 0)
+    rule += "; a stop may wait for as long as others keep its way full (fair_after_cycles: 0)";
+  else
+    rule += fmt::format("; no stop waits for ever, as after {} cycles it {}", stops.fair_after_cycles,
+                        slots ? "marks a slot that no other stop may fill" : "gets the next grant of all");
+  return {false, std::move(rule)};
+}
+
 DeadlockVerdict traffic_verdict(const TopologyConfig& config) {
+  if (const auto ring = config::stop_ring_entry(config)) return stop_ring_verdict(config.links[*ring].stops);
   const Graph graph = draw_checked(config);
   const Routes routes(graph);
   const std::vector<std::uint32_t> circle =

@@ -43,6 +43,9 @@ struct GraphFacts {
 };
 GraphFacts graph_facts(const TopologyConfig& config);
 
+/// Why a ring whose stops have no queues cannot stop, and whether one of its stops may wait for ever.
+DeadlockVerdict stop_ring_verdict(const RingStops& stops);
+
 /// Whether packets with one destination each, as in synthetic traffic, can stop one another.
 DeadlockVerdict traffic_verdict(const TopologyConfig& config);
 

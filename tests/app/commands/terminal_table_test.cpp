@@ -128,6 +128,9 @@ TEST_F(TerminalTable, IsExplainedForSpecialParts) {
 
 TEST_F(TerminalTable, IsExplainedForTraffic) {
   explained("engine: {kind: cycle}\nworkload: {traffic: {rate: 0.2, packets: 2000}}\n");
+  EXPECT_TRUE(explained("engine: {kind: cycle}\ntopology: {shape: graph, nodes: [{name: r, count: 4}], links: [{ring: "
+                        "'r[*]', stops: {rule: slots}}]}\nworkload: {traffic: {rate: 0.2, packets: 2000}}\n")
+                  .contains("stops"));
 }
 
 // The clock of the host stands below host, and nowhere else.

@@ -17,9 +17,20 @@ struct KeyRow {
   std::vector<std::string> with{};    ///< set together with the values, which are refused without
 };
 
+/// The links of a ring of four whose stops have no queues.
+inline std::string ring_of_slots(const std::string& key) {
+  return "[{ring: 'r[*]', both: true, stops: {rule: slots, " + key + "}}]";
+}
+inline std::string ring_of_grants(const std::string& key) {
+  return "[{ring: 'r[*]', both: true, stops: {rule: grants, " + key + "}}]";
+}
+
 /// One row, or several, for every key.
 inline std::vector<KeyRow> key_rows() {
   using enum BaseMachine;
+  const std::string stops_ring =
+      "topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]', both: true, stops: {rule: "
+      "slots}}]}";
   std::vector<KeyRow> rows{
       {"scene.file", kLayers, {}, {"other.gltf"}},
       {"scene.builtin", kTerrain},
@@ -52,6 +63,17 @@ inline std::vector<KeyRow> key_rows() {
       {"engine.kind", kTerrain},
       {"engine.threads", kNative, {}, {"2"}},
       {"engine.clock_mhz", kTerrain, {}, {"500"}},
+      {"clocks.core", kTerrain, {"clocks.core=1000"}, {"500"}},
+      {"clocks.noc",
+       kTraffic,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{line: 'r[*]', both: "
+        "true}]}"},
+       {"500"}},
+      {"clocks.synchroniser_cycles",
+       kTraffic,
+       {"clocks.noc=1500",
+        "topology={shape: graph, nodes: [{name: r, count: 4}], links: [{line: 'r[*]', both: true}]}"},
+       {"3"}},
       {"engine.simd", kTerrain, {"engine.simd=scalar"}},
       {"engine.transport", kNative},
       {"engine.memory_limit_mib", kNative, {}, {"1"}},
@@ -124,6 +146,12 @@ inline std::vector<KeyRow> key_rows() {
         "both: true}]}",
         "workload.traffic.rate=0.8"},
        {"hops"}},
+      {"topology.links",
+       kTraffic,
+       {stops_ring, "workload.traffic.packet_bytes=128", "workload.traffic.rate=0.9"},
+       {ring_of_slots("rings: 2"), ring_of_slots("port_bytes_per_cycle: 8"), ring_of_slots("fair_after_cycles: 1"),
+        ring_of_grants("grant_cycles: 1"), ring_of_grants("grant_cycles: 40"), ring_of_grants("command_cycles: 9"),
+        ring_of_grants("start_cycles: 99"), ring_of_grants("transfers: 1")}},
       {"topology.rings", kTerrain, {"topology.shape=multi_ring"}, {"3"}},
       {"topology.groups",
        kTraffic,
@@ -401,6 +429,10 @@ inline std::vector<KeyRow> key_rows() {
       {"workload.traffic.hotspot", kTraffic, {"workload.traffic.pattern=hotspot"}, {"1"}},
       {"workload.traffic.hotspot_fraction", kTraffic, {"workload.traffic.pattern=hotspot"}, {"0.9"}},
       {"workload.traffic.burst_packets", kTraffic, {"workload.traffic.pattern=bursty"}, {"2"}},
+      {"workload.traffic.sources", kTraffic, {stops_ring}, {"r[0]"}},
+      {"workload.traffic.destinations", kTraffic, {stops_ring}, {"r[2]"}},
+      {"workload.traffic.reply_bytes", kTraffic, {stops_ring}, {"64"}},
+      {"workload.traffic.serve_cycles", kTraffic, {stops_ring, "workload.traffic.reply_bytes=32"}, {"9"}},
   };
   for (const CostRow& row : kCostTable)
     rows.push_back(

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "ringbus/cycle/rings/ring_shape.h"
+#include "ringbus/cycle/rings/ring_station.h"
+#include "ringbus/cycle/traffic/traffic_result.h"
+
+namespace carousel::ringbus::cycle {
+
+/// What the links of a ring have moved; by the clock of the network.
+class RingLinks {
+ public:
+  struct Use {
+    Cycle busy = 0, in_window = 0;
+    std::uint64_t packets = 0;
+  };
+
+  /// `window`: its begin and its end.
+  RingLinks(std::size_t links, std::array<Cycle, 2> window) : window_(window), uses_(links) {}
+
+  /// A link is busy from `at` on. `packet`: with the first flits of one.
+  void use(std::size_t link, Cycle at, Cycle cycles, bool packet) {
+    Use& use = uses_[link];
+    use.busy += cycles;
+    use.packets += packet;
+    const Cycle begin = std::max(at, window_[0]), end = std::min(at + cycles, window_[1]);
+    if (begin < end) use.in_window += end - begin;
+  }
+  const std::vector<Use>& all() const { return uses_; }
+
+ private:
+  std::array<Cycle, 2> window_;
+  std::vector<Use> uses_;
+};
+
+/// The stops of a ring and the links between them: they are clocked together, so they are one part.
+class RingFabric {
+ public:
+  virtual ~RingFabric() = default;
+
+  /// The first cycle after the last step in which something happens; kNever when all is done.
+  virtual Cycle next() const = 0;
+  virtual void step(Cycle now) = 0;
+
+  const std::vector<RingStation>& stations() const { return stations_; }
+  const RingLinks& links() const { return links_; }
+  const StopRingUse& use() const { return use_; }
+
+ protected:
+  /// Keeps a reference to the shape. Stations by stop.
+  RingFabric(const RingShape& shape, std::vector<RingStation> stations, RingLinks links)
+      : shape_(shape), stations_(std::move(stations)), links_(std::move(links)) {}
+
+  const RingShape& shape_;
+  std::vector<RingStation> stations_;
+  RingLinks links_;
+  StopRingUse use_;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,126 @@
+#include "ringbus/cycle/rings/slot_ring.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace carousel::ringbus::cycle {
+
+SlotRing::SlotRing(const RingShape& shape, std::vector<RingStation> stations, RingLinks links)
+    : RingFabric(shape, std::move(stations), std::move(links)),
+      length_(shape.stops * shape.hop),
+      port_cycles_(shape.port_cycles()),
+      fair_after_(static_cast<Cycle>(shape.drawn.drawn->stops.fair_after_cycles)),
+      slots_(shape.lanes() * length_),
+      stops_(shape.stops) {}
+
+Cycle SlotRing::next() const {
+  // While flits are under way one gets off within a round: the port that another finds busy has just taken one.
+  const Cycle round = length_ + 2 * port_cycles_;
+  if (flying_.size() > unused_.size()) return now_ - moved_ > round ? kNever : now_ + 1;
+  Cycle first = kNever;
+  for (const RingStation& station : stations_) first = std::min(first, station.due());
+  return first == kNever ? first : std::max(first, now_ + 1);
+}
+
+void SlotRing::step(Cycle now) {
+  now_ = now;
+  for (std::uint32_t stop = 0; stop < shape_.stops; ++stop) {
+    get_off(stop, now);
+    get_on(stop, now);
+    for (std::uint32_t lane = 0; lane < shape_.lanes(); ++lane)
+      if (const Slot& leaves = slot(lane, stop, now); leaves.packet != kNone)
+        links_.use(shape_.link(shape_.segment(stop, 0, lane / shape_.rings), lane), now, 1, leaves.first);
+  }
+}
+
+/// The slot that is at a stop. Slot n stands n cycles ahead of the first stop at time 0.
+SlotRing::Slot& SlotRing::slot(std::uint32_t lane, std::uint32_t stop, Cycle now) {
+  const Cycle place = stop * shape_.hop, turned = now % length_;
+  const bool ahead = lane < shape_.rings;
+  return slots_[lane * length_ + (ahead ? place + length_ - turned : place + turned) % length_];
+}
+
+void SlotRing::get_off(std::uint32_t stop, Cycle now) {
+  Slot* oldest = nullptr;
+  std::uint64_t come = 0;
+  for (std::uint32_t lane = 0; lane < shape_.lanes(); ++lane) {
+    Slot& here = slot(lane, stop, now);
+    if (here.packet == kNone || here.to != stop) continue;
+    ++come;
+    if (oldest == nullptr || here.entered < oldest->entered) oldest = &here;
+  }
+  if (oldest == nullptr) return;
+  if (stops_[stop].port_free > now) {
+    use_.extra_rounds += come;
+    return;
+  }
+  use_.extra_rounds += come - 1;
+  stops_[stop].port_free = now + port_cycles_;
+  use_.longest_ride = std::max(use_.longest_ride, now - oldest->entered);
+  moved_ = now;
+  const std::uint32_t id = std::exchange(oldest->packet, kNone);
+  if (--flying_[id].left > 0) return;
+  stations_[stop].arrive(flying_[id].packet, now + port_cycles_ - 1);
+  unused_.push_back(id);
+}
+
+void SlotRing::get_on(std::uint32_t stop, Cycle now) {
+  Stop& here = stops_[stop];
+  if (here.packet == kNone && stations_[stop].due() <= now) begin_packet(stop, now);
+  if (here.packet == kNone || here.ready > now) return;
+  Slot* const free = free_slot(stop, now);
+  if (free == nullptr) {
+    if (fair_after_ > 0 && here.marked == nullptr && now - here.ready >= fair_after_) mark_slot(stop, now);
+    return;
+  }
+  if (here.marked != nullptr) std::exchange(here.marked, nullptr)->marked = kNone;
+  use_.longest_wait = std::max(use_.longest_wait, now - here.ready);
+  free->packet = here.packet;
+  free->to = flying_[here.packet].packet.to;
+  free->entered = now;
+  free->first = std::exchange(here.first, false);
+  here.ready = now + port_cycles_;
+  moved_ = now;
+  if (--here.left == 0) here.packet = kNone;
+}
+
+void SlotRing::begin_packet(std::uint32_t stop, Cycle now) {
+  Stop& here = stops_[stop];
+  const RingPacket packet = stations_[stop].take(now);
+  if (unused_.empty()) {
+    unused_.push_back(static_cast<std::uint32_t>(flying_.size()));
+    flying_.emplace_back();
+  }
+  here.packet = unused_.back();
+  unused_.pop_back();
+  here.left = static_cast<std::uint32_t>(shape_.flits(packet.bytes));
+  here.first = true;
+  here.ready = now + port_cycles_ - 1;
+  flying_[here.packet] = {packet, here.left};
+  moved_ = now;
+  ++use_.starts;
+}
+
+/// A slot at a stop into which its flit may go.
+SlotRing::Slot* SlotRing::free_slot(std::uint32_t stop, Cycle now) {
+  const std::uint32_t direction = flying_[stops_[stop].packet].packet.direction;
+  for (std::uint32_t ring = 0; ring < shape_.rings; ++ring) {
+    Slot& passing = slot(shape_.lane(direction, ring), stop, now);
+    if (passing.packet == kNone && (passing.marked == kNone || passing.marked == stop)) return &passing;
+  }
+  return nullptr;
+}
+
+void SlotRing::mark_slot(std::uint32_t stop, Cycle now) {
+  const std::uint32_t direction = flying_[stops_[stop].packet].packet.direction;
+  for (std::uint32_t ring = 0; ring < shape_.rings; ++ring) {
+    Slot& passing = slot(shape_.lane(direction, ring), stop, now);
+    if (passing.marked != kNone) continue;
+    passing.marked = stop;
+    stops_[stop].marked = &passing;
+    ++use_.reservations;
+    return;
+  }
+}
+
+}  // namespace carousel::ringbus::cycle

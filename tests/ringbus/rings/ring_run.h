@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/config/load/load.h"
+#include "ringbus/cycle/rings/ring_engine.h"
+#include "ringbus/cycle/traffic/traffic_settings.h"
+
+namespace carousel::ringbus {
+
+/// Runs the traffic of a configuration on its ring with stops.
+inline TrafficResult run_ring(const Config& config) {
+  return run_ring_traffic(config.topology, config.workload.traffic,
+                          cycle::network_clock(config.clocks, config.engine.clock_mhz), config.image.seed, {});
+}
+
+/// The machine of a text, and of a file of configs/rings, as users would change it.
+inline Config ring_config(const std::string& text) {
+  return load_config({text, "ring.yaml"}).config;
+}
+inline Config ring_file(const std::string& name, const std::vector<std::string>& sets = {}) {
+  return load_config(read_config_file(CAROUSEL_SOURCE_DIR "/configs/rings/" + name), sets).config;
+}
+
+/// Bytes that are accepted in a cycle of the resources.
+inline double accepted_bytes(const Config& config, const TrafficResult& result) {
+  return static_cast<double>(result.accepted) * static_cast<double>(config.workload.traffic.packet_bytes) /
+         static_cast<double>(result.window_end - result.window_begin);
+}
+
+}  // namespace carousel::ringbus
