@@ -32,14 +32,17 @@ NativeMachine::NativeMachine(const Config& config, const accel::Accel& accel, fl
   require_both_ways(config.rays.queue.kind, "rays.queue", share.alone() ? 1 : threads, 1);
   shared.control.queue_groups(config.rays.queue.kind, static_cast<std::size_t>(config.rays.queue.depth));
   if (!share.alone()) gate = std::make_unique<RankGate>(config, *transport, shared, completed);
+  if (!shared.topology.hubs().empty()) stops.resize(shared.packets.size());
+  Config of_wire = config;  // the links of a graph may differ in depth
   for (const Topology::Wire& wire : shared.topology.wires()) {
+    if (wire.depth > 0) of_wire.topology.link.depth = wire.depth;
     if (gate && !gate->here(wire)) {
       links.push_back(gate->make_link(static_cast<std::uint32_t>(links.size()),
                                       static_cast<std::size_t>(config.topology.link.depth)));
       continue;
     }
-    links.push_back(own_links ? own_links(config, links.size(), wire.from, wire.to, shared.packets)
-                              : make_link(config, links.size(), wire.from, wire.to, shared.packets));
+    links.push_back(own_links ? own_links(of_wire, links.size(), wire.from, wire.to, shared.packets)
+                              : make_link(of_wire, links.size(), wire.from, wire.to, shared.packets));
   }
 }
 

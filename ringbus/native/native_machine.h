@@ -24,6 +24,9 @@ struct NativeMachine {
 
   Machine shared;
   std::vector<std::unique_ptr<Link>> links;  ///< as shared.topology.wires()
+  /// By packet: the resource to which it is on its way. Written by the one that sends the packet, and read by the
+  /// routers that pass it on. Empty without routers.
+  std::vector<ResourceId> stops;
   CompletedQueue completed;
   std::unique_ptr<RankGate> gate;  ///< null: the whole machine is here
 };

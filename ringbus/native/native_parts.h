@@ -13,6 +13,7 @@
 #include "ringbus/native/native_machine.h"
 #include "ringbus/native/native_port.h"
 #include "ringbus/native/native_recorder.h"
+#include "ringbus/native/native_router.h"
 #include "ringbus/native/native_series.h"
 #include "ringbus/native/shader_worker.h"
 #include "ringbus/results/run_result.h"
@@ -73,12 +74,13 @@ class NativeParts {
   const RunOptions& options_;
   const LinkMaker own_links_;  // empty: links as configured
   std::size_t threads_;
-  std::size_t first_worker_ = 0;  // the thread that plays worker 0
+  std::size_t first_router_ = 0, first_worker_ = 0;  // the threads that play router 0 and worker 0
   std::unique_ptr<NativeMachine> machine_;
   RayCount count_;
   std::unique_ptr<OutstandingRays> ledger_;
   std::vector<std::unique_ptr<StatisticsSink>> sinks_;  // by resource; null without statistics
   Ports ports_;
+  std::vector<std::unique_ptr<NativeRouter>> routers_;  // of a graph
   std::vector<std::unique_ptr<ShaderWorker>> workers_;
   std::unique_ptr<NativeRecorder> recorder_;
 };

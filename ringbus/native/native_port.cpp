@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <limits>
 #include <span>
 
 #include <fmt/format.h>
@@ -21,6 +22,14 @@ std::optional<std::uint64_t> stops_after(const FaultsConfig::Resource& fault, Re
   return static_cast<std::uint64_t>(fault.after_rays);
 }
 
+/// A graph that is a ring follows the rules of one (FlowRules), among them the bubble.
+bool is_one_ring(const Topology& topology) {
+  if (!topology.hubs().empty()) return false;
+  for (std::uint32_t r = 0; r < topology.resources(); ++r)
+    if (topology.ports(ResourceId(r)).out.size() != 1 || topology.ports(ResourceId(r)).in.size() != 1) return false;
+  return true;
+}
+
 }  // namespace
 
 NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSettings& settings, EventSink* sink)
@@ -34,10 +43,13 @@ NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSe
       links_fail_(settings.faults.links.any()),
       fault_(ResourceFault::of(settings.faults.resource, settings.clock_mhz, id)),
       stops_after_(stops_after(settings.faults.resource, id)),
-      egress_limit_(machine_.flow.egress_limit(kReceiveBatch)) {
+      routed_(machine_.topology.routed() && !is_one_ring(machine_.topology)),
+      egress_limit_(machine_.flow.egress_limit(kReceiveBatch)),
+      stops_(machine.stops.empty() ? nullptr : &machine.stops),
+      egress_places_(machine_.topology.room_for_all() ? std::numeric_limits<std::size_t>::max() : kReceiveBatch) {
   const Topology::Ports& ports = machine_.topology.ports(id);
   for (const std::uint32_t wire : ports.in)
-    in_ports_.push_back({machine.links[wire].get(), machine_.topology.wires()[wire].direction});
+    in_ports_.push_back({machine.links[wire].get(), machine_.topology.wires()[wire].direction, {}});
   for (const std::uint32_t wire : ports.out) out_ports_.push_back({machine.links[wire].get(), wire, {}});
   local_.owner = id;
   local_.owners.resize((machine_.topology.resources() + 63) / 64);
@@ -117,7 +129,37 @@ std::size_t NativePort::receivable(const InPort& in) const {
   return machine_.flow.receivable(most, out.egress.size(), [&] { return out.link->free_places(); });
 }
 
+// A packet that waits at the end of a link is one place more than the plan's verdict counts
+// (ringbus/topology/graph.cpp), and places that are more cannot close a circle.
+bool NativePort::receive_routed() {
+  bool moved = false, waits = false;
+  std::array<PacketId, kReceiveBatch> batch;
+  for (std::size_t i = 0; i < in_ports_.size(); ++i) {
+    InPort& in = in_ports_[(turn_ + i) % in_ports_.size()];
+    if (in.waiting.empty()) {
+      const std::size_t count =
+          in.link->try_receive(std::span(batch).first(std::min(kReceiveBatch, in.link->capacity())));
+      in.waiting.assign(batch.begin(), batch.begin() + static_cast<std::ptrdiff_t>(count));
+    }
+    for (; !in.waiting.empty() && may_take_in(in.waiting.front()); moved = true) {
+      const PacketId id = in.waiting.front();
+      in.waiting.pop_front();
+      arrive(id);
+    }
+    waits |= !in.waiting.empty();
+  }
+  if (waits) turn_ = (turn_ + 1) % in_ports_.size();  // the next time, another link is the first
+  return moved;
+}
+
+/// A packet is at home, or can go on from here.
+bool NativePort::may_take_in(PacketId id) const {
+  const Packet& packet = machine_.packet(id);
+  return packet.owner == resource_.id() || out_ports_[logic_.out_port(packet)].egress.size() < egress_places_;
+}
+
 bool NativePort::receive() {
+  if (routed_) return receive_routed();
   bool moved = false;
   std::array<PacketId, kReceiveBatch> batch;
   for (const InPort& in : in_ports_) {
@@ -164,7 +206,9 @@ void NativePort::arrive(PacketId id) {
 }
 
 void NativePort::forward(PacketId id) {
-  out_ports_[logic_.out_port(machine_.packet(id))].egress.push_back(id);
+  const Packet& packet = machine_.packet(id);
+  if (stops_ != nullptr) (*stops_)[id.value] = machine_.topology.next(packet, resource_.id());
+  out_ports_[logic_.out_port(packet)].egress.push_back(id);
   if (sink_ != nullptr) sink_->record({.kind = EventKind::kHop, .resource = resource_.id(), .packet = id});
 }
 
@@ -253,9 +297,12 @@ bool NativePort::send_round(RayGroup& group) {
 // ---- issuing
 
 std::optional<PacketId> NativePort::free_packet() {
-  const std::optional<PacketId> id = logic_.free.take([this](std::size_t direction) {
-    const OutPort& out = out_ports_[direction];  // sent directly, any port has the same limit
+  const auto may_join = [this](const OutPort& out) {
     return machine_.flow.may_inject(out.egress.size() < egress_limit_, [&] { return out.link->free_places(); });
+  };
+  const std::optional<PacketId> id = logic_.free.take([&](std::size_t direction) {
+    // By which port a packet leaves is known when it is filled. Sent directly, any port has the same limit.
+    return routed_ ? std::all_of(out_ports_.begin(), out_ports_.end(), may_join) : may_join(out_ports_[direction]);
   });
   if (!id) stall(logic_.free.none() ? StallReason::kCredits : StallReason::kLink);
   return id;

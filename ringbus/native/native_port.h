@@ -66,6 +66,7 @@ class NativePort {
   struct InPort {
     Link* link;
     std::uint16_t direction;
+    std::deque<PacketId> waiting;  // of a graph: taken off the link; the first one has found no place
   };
   /// One link, and the packets that the link has not taken yet.
   struct OutPort {
@@ -90,6 +91,8 @@ class NativePort {
   bool tick_links();
   bool send_egress();
   bool receive();
+  bool receive_routed();
+  bool may_take_in(PacketId id) const;
   std::size_t receivable(const InPort& in) const;
   void arrive(PacketId id);
   void retire_at_owner(PacketId id, std::uint64_t begin);
@@ -133,7 +136,11 @@ class NativePort {
   std::uint64_t visits_now_ = 0;  // published once a step
   std::vector<InPort> in_ports_;
   std::vector<OutPort> out_ports_;
+  bool routed_;  // packets of one link go on by several
   std::size_t egress_limit_;
+  std::vector<ResourceId>* stops_;     // null: there are no routers
+  std::size_t egress_places_;          // of a graph, for packets of others
+  std::size_t turn_ = 0;               // of a graph: the link whose packets are taken first
   std::atomic<std::uint32_t> out_{0};  // own packets under way; written by the owner
   NativeRecorder* recorder_ = nullptr;
   Recording recording_;

@@ -10,7 +10,9 @@ namespace carousel::ringbus {
 bool NativePort::drained() const {
   const bool egress_empty =
       std::all_of(out_ports_.begin(), out_ports_.end(), [](const OutPort& out) { return out.egress.empty(); });
-  if (packets_out() > 0 || !egress_empty) return false;
+  const bool ends_empty =
+      std::all_of(in_ports_.begin(), in_ports_.end(), [](const InPort& in) { return in.waiting.empty(); });
+  if (packets_out() > 0 || !egress_empty || !ends_empty) return false;
   // A resource that has stopped took nothing in of what came back to it, and may have stopped when no ray needed that.
   return logic_.stopped() || (logic_.at_rest() && rounds_.empty() &&
                               machine_.control.free_slots(resource_.id()) == machine_.control.slots(resource_.id()));
@@ -19,6 +21,10 @@ bool NativePort::drained() const {
 std::string NativePort::describe() const {
   std::string text = logic_.describe();
   if (!rounds_.empty()) text += fmt::format(", {} new rays wait for slots", rounds_.rays());
+  for (const InPort& in : in_ports_)
+    if (!in.waiting.empty())
+      text += fmt::format("; {} waits for a place here, {} more behind it", logic_.describe(in.waiting.front()),
+                          in.waiting.size() - 1);
   for (const OutPort& out : out_ports_) {
     if (out.egress.empty()) continue;
     text += fmt::format("; {} waits for a place in the link to resource {} (depth {}, {} more behind it)",

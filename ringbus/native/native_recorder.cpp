@@ -37,11 +37,9 @@ NativeRecorder::NativeRecorder(const Config& config, const RankShare& share, std
       messages_(options_of(timeline, ray), timeline.most / topology_.resources() + 1) {
   static_assert(std::is_same_v<Clock::period, std::nano>);
   const TimelineOptions options = options_of(timeline, ray);
-  const std::size_t resources = topology_.resources();
-  for (std::size_t r = 0; r < resources; ++r) {
-    slices_.emplace_back(options, options.most / resources + 1);
-    facts_.push_back({ray_, {}});
-  }
+  const std::size_t resources = topology_.resources(), nodes = resources + topology_.hubs().size();
+  for (std::size_t n = 0; n < nodes; ++n) slices_.emplace_back(options, options.most / nodes + 1);
+  for (std::size_t r = 0; r < resources; ++r) facts_.push_back({ray_, {}});
 }
 
 void NativeRecorder::start(Transport* ranks) {
@@ -85,7 +83,7 @@ Timeline NativeRecorder::own_timeline() const {
   Timeline out;
   out.end = now();
   const std::string rank = share_.alone() ? "" : fmt::format("rank {}", share_.rank());
-  for (std::size_t r = 0; r < slices_.size(); ++r) {
+  for (std::size_t r = 0; r < facts_.size(); ++r) {
     const std::string resource = fmt::format("resource {}", r);
     out.tracks.push_back(rank.empty() ? SliceTrack{resource, "packets"} : SliceTrack{rank, resource});
   }

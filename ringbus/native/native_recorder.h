@@ -14,7 +14,7 @@
 
 namespace carousel::ringbus {
 
-/// The logs of a native run, one a resource, which writes also for the links that leave it.
+/// The logs of a native run, one a resource and one a router, which write also for the links that leave them.
 class NativeRecorder {
  public:
   using Clock = std::chrono::steady_clock;
@@ -26,7 +26,9 @@ class NativeRecorder {
   /// Track `track` is the resource's, the one after the number of resources is that of link 0, and after the links come
   /// two for each rank: of messages to it and from it.
   Recording of_resource(ResourceId id);
-  std::uint32_t link_track(std::uint32_t wire) const { return static_cast<std::uint32_t>(slices_.size()) + wire; }
+  /// A router has no track; it notes the links that leave it.
+  Recording of_router(ResourceId node) { return {&slices_[node.value], &trips_, 0, nullptr}; }
+  std::uint32_t link_track(std::uint32_t wire) const { return static_cast<std::uint32_t>(facts_.size()) + wire; }
   /// Nanoseconds since the start.
   // The start may lie ahead by as much as this rank's clock is not known.
   std::uint64_t now() const {
@@ -60,8 +62,8 @@ class NativeRecorder {
   FollowedRay* ray_;
   Clock::time_point start_{};
   TripTable trips_;
-  std::deque<SliceLog> slices_;  // by resource
-  std::deque<RayLog> facts_;     // likewise
+  std::deque<SliceLog> slices_;  // by node
+  std::deque<RayLog> facts_;     // by resource
   SliceLog messages_;
   std::vector<RankClock> clocks_;  // at the start, by rank
 };

@@ -179,7 +179,7 @@ void describe(V& v, TopologyConfig& c) {
       .relax("ring_directions", TopologyShape::kBidirectional, Relaxed{.times = 0},
              c.shape == TopologyShape::kRing && c.resources > 1)
       .only(EngineKind::kCycle, "", TopologyShape::kMultiRing, TopologyShape::kHierarchical, TopologyShape::kBus,
-            TopologyShape::kIndependent, TopologyShape::kCentral, TopologyShape::kGraph);
+            TopologyShape::kIndependent, TopologyShape::kCentral);
   v.field("rings", c.rings, IntRange{1, 64}, "rings", "The number of rings of a multi_ring.")
       .relax("rings", Better::kTwice, Relaxed{.times = 0});
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");

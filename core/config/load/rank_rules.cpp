@@ -59,6 +59,9 @@ void check_ranks(const Config& config, const RuleBreach& breach) {
          fmt::format("rays that travel to find slots are not carried over ranks yet; expected balanced or round_robin, "
                      "found {}",
                      enum_name(config.rays.placement)));
+  refuse(config.topology.shape == TopologyShape::kGraph, "topology.shape",
+         "the links of a graph are not carried over ranks yet; expected ring, bidirectional or point_to_point, found "
+         "graph");
   refuse(config.bundles.size > 0, "bundles.size",
          fmt::format("bundles are not carried over ranks yet; expected 0, found {}", config.bundles.size));
   refuse(config.faults.links.any(), "faults.links",
