@@ -73,7 +73,8 @@ foreach(library IN LISTS libraries)
   list(APPEND library_targets carousel_${library})
 endforeach()
 set_target_properties(carousel_options PROPERTIES EXPORT_NAME options)
-install(TARGETS ${library_targets} carousel_options EXPORT CarouselTargets
+set_target_properties(carousel_module_base PROPERTIES EXPORT_NAME plugin OUTPUT_NAME carousel_plugin)
+install(TARGETS ${library_targets} carousel_module_base carousel_options EXPORT CarouselTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} ${development}
         INCLUDES DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/carousel)
 set(package ${CMAKE_INSTALL_LIBDIR}/cmake/Carousel)

@@ -1,4 +1,4 @@
-// A queue of one's own as the links of the ring.
+// A queue as a plugin, `topology.link.queue: fast_forward`.
 //
 // The queue is FastForward: every cell says by itself whether it is full, so neither side reads the other's index.
 // J. Giacomoni, T. Moseley, M. Vachharajani, "FastForward for Efficient Pipeline Parallelism: A Cache-Optimized
@@ -6,19 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
-#include <cstdio>
 #include <span>
 #include <vector>
 
-#include "app/run/prepare.h"
-#include "app/run/render_job.h"
-#include "ringbus/native/native_engine.h"
+#include "ringbus/plugin/bring.h"
 #include "ringbus/queues/link_queue.h"
-#include "ringbus/stress/trial.h"
 
 namespace {
 
-namespace app = carousel::app;
 namespace ringbus = carousel::ringbus;
 using ringbus::Parties;
 
@@ -67,35 +62,11 @@ class FastForward {
   alignas(128) std::size_t head_ = 0;  // the consumer's
 };
 
-/// Hits of a small picture, in a text that is equal for equal hits.
-std::string hits_through(const app::Prepared& prepared, bool own) {
-  const carousel::Config& config = prepared.config();
-  const app::RenderJob job(prepared);
-  ringbus::RunOptions options;
-  options.threads = prepared.threads;
-  const float size = prepared.scene_size();
-  const ringbus::RunResult result = own ? ringbus::run_native_on(ringbus::make_queue_link<FastForward>, config,
-                                                                 prepared.accel, size, job.workload(), options)
-                                        : ringbus::run_native(config, prepared.accel, size, job.workload(), options);
-  std::printf("%-12s %llu rays in %.3f s, hits %s\n", own ? "FastForward" : "spsc_ring",
-              static_cast<unsigned long long>(result.rays_completed), result.wall_seconds, job.hits_digest().c_str());
-  return job.hits_digest();
-}
-
 }  // namespace
 
-int main() {
-  // Alone, under a pattern of the queue laboratory, which checks every message.
-  ringbus::stress::TrialOptions trial;
-  trial.messages = 20'000;
-  const auto alone = ringbus::stress::run_trial(ringbus::stress::queue_under_test<FastForward>("FastForward"), trial);
-  std::printf("stream       %llu messages, violations: %s\n", static_cast<unsigned long long>(alone.messages),
-              alone.violations.any() ? alone.violations.names().c_str() : "none");
-
-  // As the links of a ring: the hits are those of the built-in queue.
-  const app::Prepared prepared = app::prepare_config(
-      "{scene: {builtin: cornell}, image: {width: 32, height: 32}, topology: {resources: 4}}", "own_queue.yaml");
-  const bool same = hits_through(prepared, false) == hits_through(prepared, true);
-  std::printf("%s\n", same ? "The hits are the same." : "The hits DIFFER.");
-  return same && !alone.violations.any() ? 0 : 1;
+extern "C" const carousel::PluginInfo* carousel_plugin() {
+  static const carousel::PluginInfo info = carousel::plugin("FastForward", "1.0", [](carousel::PluginParts& parts) {
+    ringbus::bring_queue<FastForward>(parts, "fast_forward");
+  });
+  return &info;
 }

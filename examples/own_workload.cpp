@@ -1,103 +1,30 @@
-// A workload of one's own: no picture, but a range scanner that turns in the middle of a scene. Each beam that meets a
-// surface is reflected once. The machine is configured in C++, without a file.
-#include <atomic>
-#include <cmath>
-#include <cstddef>
+// A workload as a plugin: `workload: {plugin: scanner, options: {beams: 500}}`.
 #include <cstdint>
-#include <cstdio>
-#include <vector>
+#include <memory>
 
-#include <glm/geometric.hpp>
-
-#include "accel/builders/build.h"
-#include "core/config/config.h"
-#include "core/system/executor.h"
-#include "core/types/workload.h"
-#include "ringbus/cycle/cycle_engine.h"
-#include "scene/builtin/builtin.h"
+#include "ringbus/plugin/bring.h"
+#include "scanner.h"
 
 namespace {
 
-using namespace carousel;
-
-constexpr float kPi = 3.14159265f;
-
-class Scanner final : public Workload {
- public:
-  Scanner(Vec3 place, std::uint32_t beams) : place_(place), beams_(beams), distance_(beams, kInfinity) {}
-
-  /// Engines ask several workers at a time; each call takes the next beams.
-  Generated generate(WorkerId, std::size_t most, RayBatch& out) override {
-    Generated made;
-    for (; made.rays < most; ++made.rays) {
-      const std::uint32_t beam = next_.fetch_add(1, std::memory_order_relaxed);
-      if (beam >= beams_) break;
-      RayRequest request;
-      request.ray = {.origin = place_, .tmin = 0, .direction = direction(beam), .tmax = kInfinity};
-      request.tag.path = beam;
-      out.push_back(request);
-    }
-    made.finished = next_.load(std::memory_order_relaxed) >= beams_;
-    return made;
-  }
-
-  /// Every ray comes back once. A beam has places of its own, so workers do not meet.
-  void shade(WorkerId, const HitBatch& completed, RayBatch& out) override {
-    for (const RayResult& result : completed) {
-      if (result.tag.kind != RayKind::kCamera || !result.hit.valid()) continue;
-      distance_[result.tag.path] = result.hit.t;
-      RayRequest back;  // sent on sideways, from a little above the surface
-      const Vec3 along = result.ray.direction;
-      back.ray = {.origin = result.ray.origin + along * (0.999f * result.hit.t),
-                  .tmin = 0,
-                  .direction = Vec3(-along.z, along.y, along.x),
-                  .tmax = kInfinity};
-      back.tag = {.path = result.tag.path, .kind = RayKind::kBounce, .bounce = 1, .index = 0, .flags = 0};
-      out.push_back(back);
-    }
-  }
-
-  const std::vector<float>& distances() const { return distance_; }
-
- private:
-  /// Points of a spiral, spread evenly over the sphere.
-  Vec3 direction(std::uint32_t beam) const {
-    const float y = 1 - 2 * (static_cast<float>(beam) + 0.5f) / static_cast<float>(beams_);
-    const float around = static_cast<float>(beam) * kPi * (3 - std::sqrt(5.0f));
-    const float radius = std::sqrt(1 - y * y);
-    return {radius * std::cos(around), y, radius * std::sin(around)};
-  }
-
-  Vec3 place_;
-  std::uint32_t beams_;
-  std::atomic<std::uint32_t> next_{0};
-  std::vector<float> distance_;
-};
+carousel::MadeWorkload make_scanner(const carousel::WorkloadSetup& setup) {
+  const auto beams = static_cast<std::uint32_t>(setup.options.at("beams"));
+  const carousel::Vec3 middle = 0.5f * (setup.scene.lo + setup.scene.hi);
+  return {std::make_unique<scanner::Scanner>(middle, beams), beams};
+}
 
 }  // namespace
 
-int main() {
-  const scene::Scene scene = scene::make_cornell();
-  Config config;
-  config.engine.kind = EngineKind::kCycle;
-  config.topology.resources = 4;
-  config.topology.link.bytes_per_cycle = 16;
-  const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
-  const Aabb box = scene.bounds();
-
-  Scanner scanner(0.5f * (box.lo + box.hi), 2000);
-  const ringbus::RunResult result =
-      ringbus::run_cycle(config, accel, glm::length(box.hi - box.lo), scanner, ringbus::RunOptions{});
-
-  std::size_t met = 0;
-  double sum = 0;
-  for (const float t : scanner.distances()) {
-    if (t == kInfinity) continue;
-    ++met;
-    sum += t;
-  }
-  std::printf("%llu rays in %llu cycles\n", static_cast<unsigned long long>(result.rays_completed),
-              static_cast<unsigned long long>(result.cycle->cycles));
-  std::printf("%zu of 2000 beams met a surface, %.3f away on average\n", met, met > 0 ? sum / double(met) : 0);
-  return met > 0 && result.rays_completed == 2000 + met ? 0 : 1;
+extern "C" const carousel::PluginInfo* carousel_plugin() {
+  static const carousel::PluginInfo info = carousel::plugin("range scanner", "1.0", [](carousel::PluginParts& parts) {
+    carousel::ringbus::bring_workload(parts, "scanner",
+                                      {.options = {{.name = "beams",
+                                                    .standard = 2000,
+                                                    .least = 1,
+                                                    .most = 1e6,
+                                                    .unit = "beams",
+                                                    .meaning = "The number of beams, spread over the sphere."}},
+                                       .make = make_scanner});
+  });
+  return &info;
 }

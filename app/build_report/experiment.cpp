@@ -98,7 +98,7 @@ void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
 void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResult& result,
                  const InterruptScope& interrupt, bool quiet, report::Report& report) {
   report.bound = bound_of(result);
-  if (!p.config().engine.what_if || job.sample() != nullptr) return;
+  if (!p.config().engine.what_if || job.sample() != nullptr || !job.divisible()) return;
   Phase phase("search");
   report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), quiet);
   report.incomplete |= !report.bottleneck->complete;

@@ -124,6 +124,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
       ->check(CLI::IsMember({"config", "report"}));
   schema->add_flag("--markdown", arguments.schema.markdown,
                    "Print every key with its meaning as Markdown (default: JSON Schema)");
+  add_plugin_option(*schema, arguments.schema.plugins, "none");
   CLI::App* completion = program.add_subcommand("completion", "Print the completion of this program for a shell");
   completion->add_option("shell", arguments.completion.shell, "bash or zsh")
       ->required()

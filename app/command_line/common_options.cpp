@@ -33,6 +33,14 @@ void add_config_options(CLI::App& command, ConfigArguments& arguments, const cha
   add_set_option(command, arguments.sets);
 }
 
+void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins, const char* absent) {
+  command
+      .add_option("--plugin", plugins,
+                  fmt::format("Shared library whose names are known too; may be repeated (default: {})", absent))
+      ->allow_extra_args(false)
+      ->type_name("FILE");
+}
+
 void add_strict_option(CLI::App& command, ConfigArguments& arguments) {
   command.add_flag("--strict", arguments.strict,
                    "Refuse a configuration that sets keys which the machine ignores (default: they are named)");

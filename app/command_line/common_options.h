@@ -22,6 +22,8 @@ void add_log_options(CLI::App& command, LogArguments& arguments);
 /// The file of the configuration, and --set. `without`: what the command does without one; null: it needs one.
 void add_config_options(CLI::App& command, ConfigArguments& arguments, const char* without = nullptr);
 /// --strict.
+/// `--plugin` for commands that take no configuration.
+void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins, const char* absent);
 void add_strict_option(CLI::App& command, ConfigArguments& arguments);
 
 }  // namespace carousel::app

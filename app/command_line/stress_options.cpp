@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "app/command_line/command_options.h"
+#include "app/command_line/common_options.h"
 #include "app/stress/ring_queues.h"
 #include "core/config/fields/queue_kind.h"
 #include "ringbus/stress/pattern.h"
@@ -34,6 +35,7 @@ void add_stress_options(CLI::App& command, StressArguments& s) {
       ->delimiter(',')
       ->check(one_of(names_of(kEnumNames<QueueKind>)))
       ->type_name("KIND");
+  add_plugin_option(command, s.plugins, "those of the configuration");
   command.add_option("--pattern", s.patterns, "Load patterns to test, comma-separated (default: all)")
       ->delimiter(',')
       ->check(one_of(names_of(ringbus::stress::kPatterns)))

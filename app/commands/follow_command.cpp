@@ -187,6 +187,10 @@ int follow_command(const FollowArguments& arguments) {
     throw ConfigError("workload", "synthetic traffic has no rays; expected workload: rays, or the rays of a file");
   if (p.config().workload.kind == WorkloadConfig::Kind::kMemoryTrace)
     throw ConfigError("workload", "memory requests have no rays; expected workload: rays, or the rays of a file");
+  if (p.config().workload.kind == WorkloadConfig::Kind::kPlugin)
+    throw ConfigError("workload",
+                      "the program does not know the paths of a plugin's rays; expected workload: rays, or "
+                      "the rays of a file");
   if (p.config().bundles.size > 0)
     throw ConfigError("bundles.size", fmt::format("found {}; follow knows rays by themselves only; expected 0",
                                                   p.config().bundles.size));

@@ -173,7 +173,8 @@ int run_command(const RunArguments& arguments) {
           require_one_rank(arguments);
           ranks.emplace(config, program_identity());
           ranks->require_same("--trace", trace_text(arguments.trace));
-          ranks->require_files([&] { return ContentDigests(of.config_folder).of(config.scene, config.workload); });
+          ranks->require_files(
+              [&] { return ContentDigests(of.config_folder).of(config.engine, config.scene, config.workload); });
           if (ranks->rank() != 0) return;  // one writes the files
         }
         outputs.emplace(arguments, of.absolute_config());

@@ -4,6 +4,7 @@
 
 #include "app/host/exit_status.h"
 #include "app/host/output.h"
+#include "app/plugins/plugins.h"
 #include "core/config/config_page.h"
 #include "core/config/schema.h"
 #include "report/run/report_json.h"
@@ -13,6 +14,7 @@ namespace carousel::app {
 
 int schema_command(const SchemaArguments& arguments) {
   const bool config = arguments.file == "config";
+  open_plugins(arguments.plugins);
   if (arguments.markdown)
     print_result(config ? config_markdown() : report::report_markdown());
   else

@@ -1,12 +1,14 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 namespace carousel::app {
 
 struct SchemaArguments {
-  std::string file;       ///< config | report
-  bool markdown = false;  ///< every key or number as Markdown, instead of JSON Schema
+  std::string file;                  ///< config | report
+  std::vector<std::string> plugins;  ///< files; their names are values of keys
+  bool markdown = false;             ///< every key or number as Markdown, instead of JSON Schema
 };
 
 /// `carousel schema`. Returns the exit status.

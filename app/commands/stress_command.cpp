@@ -15,13 +15,14 @@
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
 #include "app/host/output_folder.h"
+#include "app/plugins/plugins.h"
 #include "app/stress/ring_queues.h"
 #include "core/config/config.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "core/text/edit_distance.h"
-#include "core/types/enum_names.h"
+#include "core/types/added_names.h"
 #include "report/html/study_pages.h"
 #include "report/read/document.h"
 #include "report/run/report_json.h"
@@ -37,6 +38,11 @@ namespace carousel::app {
 namespace {
 
 namespace stress = ringbus::stress;
+
+struct NamedQueue {
+  QueueKind kind;
+  std::string name;
+};
 
 /// The values with these names; all known values if no names are given. Throws ConfigError.
 template <class Value, class Known>
@@ -125,27 +131,36 @@ std::vector<std::int64_t> depths_about(const Config& config, const RingPlace& pl
 int stress_command(const StressArguments& arguments) {
   const InterruptScope interrupt;
   const auto start = std::chrono::steady_clock::now();
-  const std::vector<QueueKind> kinds = chosen<QueueKind>(arguments.queues, "--queue", kEnumNames<QueueKind>);
   std::vector<stress::Pattern> patterns = chosen<stress::Pattern>(arguments.patterns, "--pattern", stress::kPatterns);
   const auto place = std::find_if(ring_places().begin(), ring_places().end(),
                                   [&](const RingPlace& p) { return p.key == arguments.in; });
   if (place == ring_places().end()) unknown_place(arguments.in);
   require_sizes(arguments.bytes);
-  std::vector<stress::QueueUnderTest> queues;
-  for (const QueueKind kind : kinds) queues.push_back(stress::built_in_queue(kind));
-  for (const stress::Pattern pattern : patterns)
-    if (std::none_of(queues.begin(), queues.end(),
-                     [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
-        !arguments.patterns.empty())
-      ringbus::require_parties(kinds[0], "--queue", ringbus::Parties::kMany, ringbus::Parties::kMany);
   std::filesystem::path folder = arguments.out;
   if (folder.empty())
     folder = std::filesystem::path("out") /
              (arguments.config.empty() ? "stress" : std::filesystem::path(arguments.config).stem());
+  std::vector<QueueKind> kinds;
+  std::vector<stress::QueueUnderTest> queues;
+  std::vector<std::string> plugins = open_plugins(arguments.plugins);
+  const auto choose_queues = [&] {
+    std::vector<NamedQueue> known;
+    for (const auto& [name, kind] : named_values<QueueKind>(plugins)) known.push_back({kind, name});
+    kinds = chosen<QueueKind>(arguments.queues, "--queue", known);
+    for (const QueueKind kind : kinds) queues.push_back(stress::named_queue(kind));
+    for (const stress::Pattern pattern : patterns)
+      if (std::none_of(queues.begin(), queues.end(),
+                       [&](const auto& queue) { return stress::pattern_fits(queue, pattern); }) &&
+          !arguments.patterns.empty())
+        ringbus::require_parties(kinds[0], "--queue", ringbus::Parties::kMany, ringbus::Parties::kMany);
+  };
   std::optional<OutputFolder> output;
   std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
     prepared.reset(new Prepared(prepare(arguments, {}, false, [&](const Prepared& of) {
+      for (std::string& file : plugins_of(of.config().engine, of.config_folder))
+        if (std::find(plugins.begin(), plugins.end(), file) == plugins.end()) plugins.push_back(std::move(file));
+      choose_queues();
       const Config config = of.absolute_config();
       output.emplace(folder, &config, arguments.force, Results::kStress);
     })));
@@ -154,6 +169,7 @@ int stress_command(const StressArguments& arguments) {
       throw ConfigError(
           {{prepared->located.positions.find("workload"), "workload", "stress tests queues with rays; expected rays"}});
   } else {
+    choose_queues();
     output.emplace(folder, nullptr, arguments.force, Results::kStress);
   }
 

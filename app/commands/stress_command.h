@@ -10,6 +10,7 @@ namespace carousel::app {
 
 struct StressArguments : ConfigArguments {  // without a configuration the queues are tested by themselves
   std::vector<std::string> queues;          ///< names; empty: all
+  std::vector<std::string> plugins;         ///< files; besides those of the configuration
   std::vector<std::string> patterns;        ///< names; empty: all
   std::vector<std::size_t> bytes;           ///< 8, 64, 256; empty: each pattern's own sizes
   std::string in = "topology.link.queue";   ///< the queue inside the ring, by the key of its design

@@ -40,6 +40,13 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
     }
     list_ = std::make_unique<RayListWorkload>(std::move(rays), workers, prepared.all_hits.get());
     frame_rays_ = list_->size();
+  } else if (config.workload.kind == WorkloadConfig::Kind::kPlugin) {
+    own_ =
+        std::make_unique<OwnRays>(config.workload.own,
+                                  WorkloadSetup{workers, prepared.scene.bounds(),
+                                                static_cast<std::uint64_t>(config.image.seed), config.workload.options},
+                                  prepared.located.positions);
+    frame_rays_ = own_->first_rays();
   } else {
     shading::require_picture_files(files_);
     tracer_ = std::make_unique<shading::PathTracer>(prepared.scene, config, paths_in_flight(config), workers);
@@ -150,12 +157,14 @@ void RenderJob::join() {
 }
 
 Workload& RenderJob::workload() const {
+  if (own_) return *own_;
   return tracer_ ? static_cast<Workload&>(*tracer_) : *list_;
 }
 
 void RenderJob::set_recorder(shading::RayRecorder* recorder) {
   if (tracer_) tracer_->set_recorder(recorder);
   if (list_) list_->set_recorder(recorder);
+  if (own_) own_->set_recorder(recorder);
 }
 
 std::pair<std::uint32_t, std::uint32_t> RenderJob::place_of(std::uint32_t path) const {
@@ -180,6 +189,7 @@ std::uint64_t RenderJob::piece_of(std::uint32_t path) const {
 }
 
 std::array<std::uint64_t, kRayKinds> RenderJob::emitted() const {
+  if (own_) return own_->emitted();
   return tracer_ ? tracer_->counts().emitted : list_->emitted();
 }
 
@@ -188,6 +198,7 @@ std::uint64_t RenderJob::saturated() const {
 }
 
 std::string RenderJob::hits_digest() const {
+  if (own_) return own_->hits_digest().hex();
   return (tracer_ ? tracer_->hits_digest() : list_->hits_digest()).hex();
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "accel/traverse/reference_tracer.h"
+#include "app/plugins/own_rays.h"
 #include "app/run/prepare.h"
 #include "app/run/ray_list_workload.h"
 #include "report/run/report.h"
@@ -18,7 +19,7 @@
 
 namespace carousel::app {
 
-/// The rays of a run: those of a picture or those of a file, as configured.
+/// The rays of a run: those of a picture, of a file or of a plugin, as configured.
 class RenderJob {
  public:
   /// Reads the file of `rays_from`. Keeps references to `prepared`. Throws ConfigError and FileError.
@@ -43,6 +44,8 @@ class RenderJob {
   void join();
 
   Workload& workload() const;
+  /// A part of its first rays can be traced by itself; not so of a plugin's, which go their own way.
+  bool divisible() const { return own_ == nullptr; }
   void set_recorder(shading::RayRecorder* recorder);
   /// Pixel and sample of a path whose rays are in flight; of a ray of a list its number and 0.
   std::pair<std::uint32_t, std::uint32_t> place_of(std::uint32_t path) const;
@@ -87,8 +90,9 @@ class RenderJob {
 
   std::optional<double> raster_seconds_, draw_seconds_;
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads
-  std::unique_ptr<shading::PathTracer> tracer_;  // either tracer_ or list_ is set
+  std::unique_ptr<shading::PathTracer> tracer_;  // one of these three is set
   std::unique_ptr<RayListWorkload> list_;
+  std::unique_ptr<OwnRays> own_;
   std::optional<shading::PathSample> drawn_, share_;
   ringbus::Transport* ranks_ = nullptr;
   std::uint64_t frame_rays_, seed_;

@@ -23,7 +23,7 @@ struct Condition {
 };
 
 constexpr bool meets_rays(const C& c) {
-  return c.workload.kind == Workload::kRays || c.workload.kind == Workload::kRaysFrom;
+  return c.workload.kind != Workload::kTraffic && c.workload.kind != Workload::kMemoryTrace;
 }
 constexpr bool exchanges_packets(const C& c) {
   return properties_of(c.topology.shape).has_packets;
@@ -70,7 +70,7 @@ inline constexpr Condition kClock{
 inline constexpr Condition kPicture{[](const C& c, const S&) { return c.workload.kind == Workload::kRays; },
                                     "the workload has no picture"};
 inline constexpr Condition kFlags{[](const C& c, const S&) { return c.workload.kind == Workload::kRays; },
-                                  "rays of a file carry no flags"};
+                                  "rays of a file or of a plugin carry no such flags"};
 inline constexpr Condition kDrawn{[](const C& c, const S&) { return c.workload.kind != Workload::kRaysFrom; },
                                   "rays of a file are not drawn at random"};
 inline constexpr Condition kLatency{

@@ -8,6 +8,7 @@
 
 #include "core/config/schema.h"
 #include "core/text/edit_distance.h"
+#include "core/types/workload_offer.h"
 
 namespace carousel::config {
 
@@ -216,6 +217,10 @@ std::optional<std::size_t> Reader::choose(const Node& node, const std::vector<st
   if (is_scalar(node))
     for (std::size_t i = 0; i < names.size(); ++i)
       if (names[i] == node.text) return i;
+  if (names.empty()) {
+    wrong(node, "a name that one of engine.plugins brings; they bring none for this key");
+    return std::nullopt;
+  }
   const auto near = is_scalar(node) ? nearest_name(node.text, names) : std::nullopt;
   wrong(node, "one of " + join(names), near ? fmt::format("; did you mean '{}'?", *near) : "");
   return std::nullopt;
@@ -235,6 +240,21 @@ void Reader::on_section_or_number(std::string_view key, TesterUnits& value, cons
 void Reader::require(const Node& node, std::string_view key) {
   if (!key.empty() && node.kind == Node::Kind::kMap && !node.find(key))
     issues_.push_back({node.position, path(), fmt::format("expected the key '{}'", key)});
+}
+
+void Reader::texts(std::string_view key, std::vector<std::string>& value, const char*) {
+  const Visit visit(*this, key);
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kSeq) return wrong(*visit.node, "a list");
+  value.clear();
+  for (const Node& item : visit.node->items) {
+    path_.push_back(std::to_string(value.size()));
+    if (is_scalar(item) && !item.text.empty())
+      value.push_back(item.text);
+    else
+      wrong(item, "a text that is not empty");
+    path_.pop_back();
+  }
 }
 
 void Reader::effects(std::string_view key, ShadingConfig::Effects& value, const char*) {
@@ -262,7 +282,8 @@ void Reader::workload(std::string_view key, WorkloadConfig& value, const char*) 
   const Visit visit(*this, key);
   if (!visit.node) return;
   const Node& node = *visit.node;
-  const std::string expected = "rays, {rays_from: FILE}, {memory_trace: FILE} or {traffic: {...}}";
+  const std::string expected =
+      "rays, {rays_from: FILE}, {memory_trace: FILE}, {traffic: {...}} or {plugin: NAME, options: {...}}";
   if (node.kind == Node::Kind::kString && node.text == "rays") {
     value.kind = WorkloadConfig::Kind::kRays;
   } else if (node.kind == Node::Kind::kMap) {
@@ -270,17 +291,39 @@ void Reader::workload(std::string_view key, WorkloadConfig& value, const char*) 
     field("rays_from", value.rays_from, "", "");
     field("memory_trace", value.memory_trace, "", "");
     section("traffic", value.traffic, "");
+    own_workload(value);
     report_unknown(scopes_.back());
     scopes_.pop_back();
-    const bool from_file = node.find("rays_from"), traffic = node.find("traffic"), trace = node.find("memory_trace");
+    const bool from_file = node.find("rays_from"), traffic = node.find("traffic"), trace = node.find("memory_trace"),
+               own = node.find("plugin");
     using enum WorkloadConfig::Kind;
-    if (from_file + traffic + trace != 1)
+    if (from_file + traffic + trace + own != 1 || (node.find("options") && !own))
       issues_.push_back({node.position, path(), "expected " + expected});
     else
-      value.kind = traffic ? kTraffic : trace ? kMemoryTrace : kRaysFrom;
+      value.kind = own ? kPlugin : traffic ? kTraffic : trace ? kMemoryTrace : kRaysFrom;
   } else {
     wrong(node, expected);
   }
+}
+
+/// The workload of a plugin. An option that is not given has its default.
+void Reader::own_workload(WorkloadConfig& value) {
+  const WorkloadOffer* offer = nullptr;
+  {
+    const Visit visit(*this, "plugin");
+    const auto chosen = visit.node ? choose<OwnWorkload>(*visit.node) : std::nullopt;
+    if (chosen) offer = added_body<WorkloadOffer>(value.own = *chosen);
+  }
+  const Visit visit(*this, "options");
+  if (offer == nullptr) return;  // the options are those of a workload
+  for (const WorkloadOption& option : offer->options) value.options[option.name] = option.standard;
+  if (!visit.node) return;
+  if (visit.node->kind != Node::Kind::kMap) return wrong(*visit.node, "a map");
+  scopes_.push_back({visit.node, {}});
+  for (const WorkloadOption& option : offer->options)
+    real(option.name, value.options[option.name], {option.least, option.most}, option.unit.c_str());
+  report_unknown(scopes_.back());
+  scopes_.pop_back();
 }
 
 void Reader::vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -12,6 +13,7 @@
 #include "core/config/fields/topology.h"
 #include "core/config/fields/workload.h"
 #include "core/config/tree/tree.h"
+#include "core/types/added_names.h"
 #include "core/types/vec.h"
 
 namespace carousel::config {
@@ -20,7 +22,9 @@ namespace carousel::config {
 /// field keeps its default.
 class Reader : public RowVisitor<Reader> {
  public:
-  Reader(std::vector<ConfigIssue>& issues, const TestersConfig& base) : issues_(issues), base_testers_(base) {}
+  /// `plugins`: the files of plugins whose names count.
+  Reader(std::vector<ConfigIssue>& issues, const TestersConfig& base, Origins plugins = {})
+      : issues_(issues), base_testers_(base), plugins_(plugins) {}
 
   /// Reads the whole struct from `node`.
   template <class T>
@@ -51,7 +55,7 @@ class Reader : public RowVisitor<Reader> {
   void on_choice(std::string_view key, E& value, const char*) {
     const Visit visit(*this, key);
     if (!visit.node) return;
-    if (const auto index = choose(*visit.node, names<E>())) value = kEnumNames<E>[*index].value;
+    if (const auto chosen = choose<E>(*visit.node)) value = *chosen;
   }
   template <class E>
   void on_choice(std::string_view key, std::optional<E>& value, const char* meaning) {
@@ -95,8 +99,9 @@ class Reader : public RowVisitor<Reader> {
     if (visit.node->kind != Node::Kind::kSeq) return wrong(*visit.node, "a list");
     value.clear();
     for (const Node& item : visit.node->items)
-      if (const auto chosen = choose(item, names<E>())) value.push_back(kEnumNames<E>[*chosen].value);
+      if (const auto chosen = choose<E>(item)) value.push_back(*chosen);
   }
+  void texts(std::string_view key, std::vector<std::string>& value, const char*);
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*);
   void workload(std::string_view key, WorkloadConfig& value, const char*);
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*);
@@ -117,18 +122,22 @@ class Reader : public RowVisitor<Reader> {
     const Node* node;  ///< null when the key is not given
   };
 
+  /// The value of the enum that a node names.
   template <class E>
-  static std::vector<std::string> names() {
-    std::vector<std::string> out;
-    out.reserve(kEnumNames<E>.size());
-    for (const auto& entry : kEnumNames<E>) out.emplace_back(entry.name);
-    return out;
+  std::optional<E> choose(const Node& node) {
+    const auto values = named_values<E>(plugins_);
+    std::vector<std::string> names;
+    names.reserve(values.size());
+    for (const auto& [name, value] : values) names.push_back(name);
+    const auto index = choose(node, names);
+    return index ? std::optional(values[*index].second) : std::nullopt;
   }
 
   template <class Real>
   void real(std::string_view key, Real& value, RealRange range, const char* unit);
   /// True if the key says auto.
   bool is_auto(std::string_view key) const;
+  void own_workload(WorkloadConfig& value);
   void vector(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* expected);
   std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
   void report_unknown(const Scope& frame);
@@ -139,6 +148,7 @@ class Reader : public RowVisitor<Reader> {
 
   std::vector<ConfigIssue>& issues_;
   TestersConfig base_testers_;  ///< values that an override of the testers starts from
+  Origins plugins_;
   std::vector<Scope> scopes_;
   std::vector<std::string> path_;
 };

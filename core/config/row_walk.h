@@ -58,6 +58,7 @@ class RowWalk {
   }
   template <class E>
   void choices(std::string_view, std::vector<E>&, const char*) {}
+  void texts(std::string_view, std::vector<std::string>&, const char*) {}
   void effects(std::string_view, ShadingConfig::Effects&, const char*) {}
   void workload(std::string_view, WorkloadConfig&, const char*) {}
   void vary(std::string_view, std::map<std::string, std::vector<std::string>>&, const char*) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <mutex>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -9,7 +10,9 @@
 #include "core/config/config.h"
 #include "core/config/not_built.h"
 #include "core/config/write.h"
+#include "core/types/added_names.h"
 #include "core/types/effect.h"
+#include "core/types/workload_offer.h"
 
 namespace carousel {
 
@@ -111,6 +114,10 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     for (const E item : value) standard.push_back(enum_name(item));
     put(key, {{"type", "array"}, {"items", {{"enum", names<E>()}}}, {"default", std::move(standard)}}, "", meaning);
   }
+  void texts(std::string_view key, std::vector<std::string>&, const char* meaning) {
+    put(key, {{"type", "array"}, {"items", {{"type", "string"}, {"minLength", 1}}}, {"default", Json::array()}}, "",
+        meaning);
+  }
   void effects(std::string_view key, ShadingConfig::Effects&, const char* meaning) {
     put(key,
         {{"anyOf", {Json{{"enum", {"auto", "all"}}}, Json{{"type", "array"}, {"items", {{"enum", kEffectNames}}}}}},
@@ -132,11 +139,21 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
                 file("A file of rays in CSV. Its path is relative to the config's folder, then to the working one."));
     Json trace = one_key("memory_trace",
                          file("A file of requests to the memory in CSV (docs/memory.md); the memory runs alone."));
-    put(key,
-        {{"anyOf",
-          {Json{{"const", "rays"}}, rays, trace, one_key("traffic", object(value.traffic, "Synthetic packets."))}},
-         {"default", "rays"}},
-        "", meaning);
+    Json all = Json::array({Json{{"const", "rays"}}, std::move(rays), std::move(trace),
+                            one_key("traffic", object(value.traffic, "Synthetic packets."))});
+    const Json any_options{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
+    const auto plugin = [&](Json name, Json options) {
+      name["description"] = "A workload that one of engine.plugins brings.";
+      options["description"] = "Numbers that this workload takes; docs/plugins.md.";
+      all.push_back({{"type", "object"},
+                     {"properties", {{"plugin", std::move(name)}, {"options", std::move(options)}}},
+                     {"required", {"plugin"}},
+                     {"additionalProperties", false}});
+    };
+    const auto brought = all_named_values<OwnWorkload>();
+    for (const auto& [name, own] : brought) plugin({{"const", name}}, options_of(own));
+    if (brought.empty()) plugin({{"type", "string"}, {"minLength", 1}}, any_options);
+    put(key, {{"anyOf", std::move(all)}, {"default", "rays"}}, "", meaning);
   }
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>&, const char* meaning) {
     const Json scalar{{"type", {"string", "number", "boolean"}}};
@@ -161,8 +178,20 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
   template <class E>
   static std::vector<std::string> names() {
     std::vector<std::string> out;
-    for (const auto& entry : kEnumNames<E>) out.emplace_back(entry.name);
+    for (const auto& [name, value] : all_named_values<E>())
+      if (std::find(out.begin(), out.end(), name) == out.end()) out.push_back(name);
     return out;
+  }
+  static Json options_of(OwnWorkload own) {
+    Json properties = Json::object();
+    if (const auto* offer = added_body<WorkloadOffer>(own))
+      for (const WorkloadOption& option : offer->options) {
+        Json& of = properties[option.name] = real({option.least, option.most});
+        of["default"] = option.standard;
+        if (!option.unit.empty()) of["unit"] = option.unit;
+        of["description"] = option.meaning;
+      }
+    return {{"type", "object"}, {"properties", std::move(properties)}, {"additionalProperties", false}};
   }
   void put(std::string_view key, Json schema, const char* unit, const char* meaning) {
     if (*unit) schema["unit"] = unit;
@@ -219,26 +248,40 @@ void walk_schema(const Json& schema, const VisitKey& visit) {
   walk(schema, "", visit);
 }
 
+namespace {
+
+/// What the schema says, put together once: a file may hold thousands of unknown keys.
+struct SchemaFacts {
+  std::map<std::string, std::vector<std::string>, std::less<>> values;  // by key, of enumerations
+  std::vector<std::string> paths;
+};
+
+/// The facts of the schema with the names that are known now. What it returns stays where it is.
+const SchemaFacts& schema_facts() {
+  static std::mutex mutex;
+  static std::map<std::size_t, SchemaFacts> facts;  // by the number of names that plugins have added
+  const std::size_t added = added_in_all();
+  const std::lock_guard lock(mutex);
+  const auto found = facts.find(added);
+  if (found != facts.end()) return found->second;
+  SchemaFacts& out = facts[added];
+  walk(config_schema(), "", [&](const std::string& key, const Json& schema) {
+    out.paths.push_back(key);
+    if (schema.contains("enum")) out.values[key] = schema["enum"].get<std::vector<std::string>>();
+  });
+  return out;
+}
+
+}  // namespace
+
 std::vector<std::string> enum_values(std::string_view path) {
-  static const std::map<std::string, std::vector<std::string>, std::less<>> values = [] {
-    std::map<std::string, std::vector<std::string>, std::less<>> out;
-    walk(config_schema(), "", [&](const std::string& key, const Json& schema) {
-      if (schema.contains("enum")) out[key] = schema["enum"].get<std::vector<std::string>>();
-    });
-    return out;
-  }();
+  const auto& values = schema_facts().values;
   const auto found = values.find(path);
   return found == values.end() ? std::vector<std::string>{} : found->second;
 }
 
 const std::vector<std::string>& config_key_paths() {
-  // Made once: a file may hold thousands of unknown keys.
-  static const std::vector<std::string> paths = [] {
-    std::vector<std::string> out;
-    walk(config_schema(), "", [&](const std::string& path, const Json&) { out.push_back(path); });
-    return out;
-  }();
-  return paths;
+  return schema_facts().paths;
 }
 
 std::optional<std::string> config_path_ending_in(std::string_view key) {

@@ -88,6 +88,7 @@ class JsonWriter : public RowVisitor<JsonWriter> {
     for (const E item : value) items.push_back(enum_name(item));
     put(key, std::move(items));
   }
+  void texts(std::string_view key, std::vector<std::string>& value, const char*) { put(key, value); }
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*) {
     using Choice = ShadingConfig::Effects::Choice;
     put(key, value.choice == Choice::kList ? Json(value.names) : Json(value.choice == Choice::kAuto ? "auto" : "all"));
@@ -102,6 +103,8 @@ class JsonWriter : public RowVisitor<JsonWriter> {
         return put(key, {{"memory_trace", value.memory_trace}});
       case WorkloadConfig::Kind::kTraffic:
         return put(key, {{"traffic", object(value.traffic)}});
+      case WorkloadConfig::Kind::kPlugin:
+        return put(key, {{"plugin", enum_name(value.own)}, {"options", value.options}});
     }
   }
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*) {

@@ -48,26 +48,13 @@ std::string bare(std::string_view build) {
   return plain_text(build.substr(0, build.find('\n')));
 }
 
-/// Why a file cannot be a module of this program; empty if it can. Runs nothing of it: a library's constructors run
-/// when it is opened, and those of another build may do anything.
-std::string fault_of(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) return std::strerror(errno);
-  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (bytes.find(module_build()) != bytes.npos) return "";
-  const std::size_t at = bytes.find(kBuildMark);
-  if (at == bytes.npos) return "it is no module of Carousel";
-  return fmt::format("it is of the build {}; expected that of this program, {}", bare(bytes.substr(at, 256)),
-                     bare(module_build()));
-}
-
 struct Opened {
   const ModuleInfo* info = nullptr;
   std::string fault;
 };
 
 Opened open_file(const fs::path& file, const std::string& name) {
-  if (std::string fault = fault_of(file); !fault.empty()) return {nullptr, fault};
+  if (std::string fault = build_fault(file, "module"); !fault.empty()) return {nullptr, fault};
   // Names stay the module's own (RTLD_LOCAL); it is never closed, as objects that it made may live on.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (library == nullptr) return {nullptr, plain_text(dlerror())};
@@ -106,6 +93,19 @@ fs::path existing_file_of(const std::string& name) {
 
 }  // namespace
 
+std::string build_fault(const fs::path& file, std::string_view what) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return "it is no file";
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return std::strerror(errno);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  if (bytes.find(module_build()) != bytes.npos) return "";
+  const std::size_t at = bytes.find(kBuildMark);
+  if (at == bytes.npos) return fmt::format("it is no {} of Carousel", what);
+  return fmt::format("it is of the build {}; expected that of this program, {}", bare(bytes.substr(at, 256)),
+                     bare(module_build()));
+}
+
 fs::path module_folder() {
   if (const char* chosen = std::getenv("CAROUSEL_MODULES"); chosen != nullptr && *chosen != '\0') return chosen;
   std::error_code error;
@@ -118,7 +118,7 @@ fs::path module_folder() {
 
 fs::path module_file(const std::string& name) {
   const fs::path file = existing_file_of(name);
-  if (const std::string fault = fault_of(file); !fault.empty()) refuse(name, file, fault);
+  if (const std::string fault = build_fault(file, "module"); !fault.empty()) refuse(name, file, fault);
   return file;
 }
 

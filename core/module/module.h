@@ -37,6 +37,11 @@ class ModuleError : public FileError {
   using FileError::FileError;
 };
 
+/// Why a file cannot be opened as a part of this program, `what` in messages: it is none, or is of another build. Empty
+/// if it can be. Runs nothing of it: a library's constructors run when it is opened, and those of another build may do
+/// anything.
+std::string build_fault(const std::filesystem::path& file, std::string_view what);
+
 /// The folder with the modules of this program: `CAROUSEL_MODULES` of the environment if it is set, else `modules` in
 /// the build folder, or `lib/carousel/modules` beside the folder of an installed program.
 std::filesystem::path module_folder();

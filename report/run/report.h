@@ -44,6 +44,7 @@ struct Report {
   Program carousel;
   nlohmann::ordered_json config = nlohmann::ordered_json::object();
   std::vector<std::string> ignored_keys;
+  std::optional<std::vector<Plugin>> plugins;
   SceneSummary scene;
   Engine engine;
   Rays rays;
@@ -90,6 +91,7 @@ void describe(V& v, const Report& r) {
   v.any("config", r.config, "resolved configuration; see carousel schema config");
   v.field("ignored_keys", r.ignored_keys, "",
           "keys that the configuration sets and that this machine, with its scene and workload, cannot feel");
+  v.section("plugins", r.plugins, "each of engine.plugins; code of others, of which the results depend");
   v.section("scene", r.scene, "scene that was rendered");
   v.section("engine", r.engine, "engine that simulated the machine");
   v.section("rays", r.rays, "rays; emitted = completed + lost");

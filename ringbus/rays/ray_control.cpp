@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <iterator>
 
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+#include "core/types/added_names.h"
+
 namespace carousel::ringbus {
 
 RayControlSettings ray_control_settings(const RaysConfig& rays, const CollectionsConfig& collections,
@@ -14,6 +19,7 @@ RayControlSettings ray_control_settings(const RaysConfig& rays, const Collection
 
 RayControl::RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores)
     : placement_(settings.placement),
+      rule_(added_body<PlacementRule>(placement_)),
       rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
       local_(settings.local),
       share_(settings.share),
@@ -84,6 +90,28 @@ ResourceId RayControl::emptiest() const {
   return best;
 }
 
+/// The resource that a plugin's rule chooses, whether it has room or not.
+ResourceId RayControl::chosen(const RayRequest& ray) {
+  free_now_.clear();
+  for (std::uint32_t r = 0; r < resources_; ++r) free_now_.push_back(free_slots(ResourceId(r)));
+  const std::uint32_t resource = rule_->choose(ray, {free_now_, slots_used_.load(std::memory_order_relaxed)});
+  if (resource >= resources_)
+    throw SimulationError(
+        fmt::format("rays.placement: {} chose resource {} of {}", enum_name(placement_), resource, resources_));
+  return ResourceId(resource);
+}
+
+std::size_t RayControl::place_by_rule(std::span<const RayRequest> rays, std::vector<RayId>& ids) {
+  std::size_t placed = 0;
+  for (std::uint32_t refused = 0; placed < rays.size() && refused < resources_; ++placed) {
+    const std::uint32_t first = chosen(rays[placed]).value;
+    for (refused = 0; refused < resources_; ++refused)
+      if (load_some(ResourceId((first + refused) % resources_), rays.subspan(placed, 1), ids) == 1) break;
+    if (refused == resources_) break;
+  }
+  return placed;
+}
+
 std::size_t RayControl::load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids) {
   SlotList& list = slots_[resource.value];
   const std::lock_guard lock(list.mutex);
@@ -133,6 +161,7 @@ void RayControl::free(ResourceId resource, std::span<const std::uint32_t> slots)
 }
 
 std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids) {
+  if (rule_ != nullptr) return place_by_rule(rays, ids);
   std::size_t placed = 0;
   if (placement_ == Placement::kRoundRobin) {
     // One ray a resource in turn, except for full resources.
@@ -212,11 +241,13 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       }
     } else {
       if (local_ && placement_ == Placement::kBalanced) issuer = emptiest();
+      if (local_ && rule_ != nullptr) issuer = chosen(next.front());
+      if (local_ && rule_ != nullptr && free_slots(issuer) < std::min(next.size(), enough_slots_)) issuer = emptiest();
       const std::size_t room = local_ ? free_slots(issuer) : free_slots();
       if (room < std::min(next.size(), enough_slots_)) {
         slot_waits_.fetch_add(1, std::memory_order_relaxed);
         // If resources take turns, the next one may have room.
-        if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= enough_slots_) continue;
+        if (local_ && placement_ == Placement::kRoundRobin && free_slots(emptiest()) >= enough_slots_) continue;
         break;
       }
       if (!may_send(issuer)) break;

@@ -17,6 +17,7 @@
 #include "core/types/workload.h"
 #include "ringbus/queues/pooled_queue.h"
 #include "ringbus/rays/bundle_builder.h"
+#include "ringbus/rays/placement_rule.h"
 #include "ringbus/rays/rank_share.h"
 #include "ringbus/rays/ray_group.h"
 #include "ringbus/rays/ray_store.h"
@@ -140,8 +141,11 @@ class RayControl {
     return share_.alone() ? next_resource() : ResourceId(share_.arc_begin() + turn_++ % share_.arc_size());
   }
   ResourceId emptiest() const;
+  std::size_t place_by_rule(std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  ResourceId chosen(const RayRequest& ray);
 
   Placement placement_;
+  const PlacementRule* rule_;  // a plugin's; null: one of the program
   bool rays_travel_, local_;
   RankShare share_;
   RemotePlacing* remote_ = nullptr;
@@ -161,6 +165,7 @@ class RayControl {
   std::size_t waiting_bundles_head_ = 0;
   std::vector<std::uint32_t> order_, members_;  // scratch
   std::vector<std::uint8_t> sizes_;             // scratch
+  std::vector<std::size_t> free_now_;           // scratch
   std::uint32_t turn_ = 0;
   std::optional<ResourceId> excluded_;
   std::atomic<bool> any_waiting_{false};

@@ -46,10 +46,12 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
     for (std::size_t i = bundle; i < std::min(bundle + group_rays_, waiting_bundles_.size()); ++i)
       wanted += waiting_bundles_[i];
     const std::uint32_t turn = turn_;
-    const ResourceId issuer = local_ && placement_ == Placement::kBalanced ? emptiest() : next_resource();
+    ResourceId issuer = local_ && placement_ == Placement::kBalanced ? emptiest() : next_resource();
+    if (local_ && rule_ != nullptr) issuer = chosen(rays[done]);
+    if (local_ && rule_ != nullptr && free_slots(issuer) < std::min(wanted, enough_slots_)) issuer = emptiest();
     if ((local_ ? free_slots(issuer) : free_slots()) < std::min(wanted, enough_slots_)) {
       slot_waits_.fetch_add(1, std::memory_order_relaxed);
-      if (local_ && placement_ != Placement::kBalanced && free_slots(emptiest()) >= std::min(wanted, enough_slots_))
+      if (local_ && placement_ == Placement::kRoundRobin && free_slots(emptiest()) >= std::min(wanted, enough_slots_))
         continue;
       turn_ = turn;  // a group that has to wait costs no resource its turn
       break;
@@ -61,7 +63,10 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
     RayGroup group;
     while (group.ids.size() < group_rays_ && bundle < waiting_bundles_.size()) {
       const std::size_t size = waiting_bundles_[bundle];
-      ResourceId owner = local_ ? issuer : placement_ == Placement::kBalanced ? emptiest() : next_resource();
+      ResourceId owner = local_                               ? issuer
+                         : rule_ != nullptr                   ? chosen(rays[done])
+                         : placement_ == Placement::kBalanced ? emptiest()
+                                                              : next_resource();
       if (!local_ && free_slots(owner) < size) owner = emptiest();
       if (free_slots(owner) < size) {
         room = false;

@@ -1,14 +1,15 @@
 #include "ringbus/stress/queue_under_test.h"
 
-#include "core/config/fields/queue_kind.h"
-#include "core/types/enum_names.h"
+#include "core/types/added_names.h"
+#include "ringbus/queues/queue_design.h"
 #include "ringbus/queues/queue_types.h"
 
 namespace carousel::ringbus::stress {
 
-QueueUnderTest built_in_queue(QueueKind kind) {
-  return with_queue_type(
-      kind, [&](auto type) { return queue_under_test<decltype(type)::template Of>(std::string(enum_name(kind))); });
+QueueUnderTest named_queue(QueueKind kind) {
+  const std::string name(enum_name(kind));
+  if (const auto* own = added_body<QueueDesign>(kind)) return own->under_test(name);
+  return with_queue_type(kind, [&](auto type) { return queue_under_test<decltype(type)::template Of>(name); });
 }
 
 }  // namespace carousel::ringbus::stress

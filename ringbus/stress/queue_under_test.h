@@ -82,6 +82,6 @@ QueueUnderTest queue_under_test(std::string name) {
 }
 
 /// A design that a configuration can name.
-QueueUnderTest built_in_queue(QueueKind kind);
+QueueUnderTest named_queue(QueueKind kind);
 
 }  // namespace carousel::ringbus::stress

@@ -1,6 +1,6 @@
 """cmake --install into an empty folder; what stands there works, and examples/ build against it and run.
 
-CAROUSEL_BUILD names the build folder. Nothing of the project is compiled here but the three examples.
+CAROUSEL_BUILD names the build folder. Nothing of the project is compiled here but the examples.
 """
 
 import gzip
@@ -132,9 +132,21 @@ class Install(unittest.TestCase):
         run("cmake", "-S", self.prefix / "share/doc/carousel-dev/examples", "-B", build, "-G", "Ninja",
             f"-DCMAKE_PREFIX_PATH={self.prefix}", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_FLAGS_DEBUG=-O0")
         run("cmake", "--build", build)
-        self.assertIn("violations: none", run(build / "own_queue"))
-        self.assertIn("broad_first (own)", run(build / "own_policy"))
-        self.assertIn("2000 of 2000 beams met a surface", run(build / "own_workload"))
+        self.assertIn("2000 of 2000 beams met a surface", run(build / "own_program"))
+        # The installed program knows what the plugins bring.
+        plugins = ", ".join(str(build / f"libown_{part}.so") for part in ("queue", "policy", "placement", "workload"))
+        machine = self.prefix / "share/doc/carousel-dev/examples/plugins.yaml"
+        words = [self.program, "run", machine, "--json", "--set", f"engine.plugins=[{plugins}]", "--out"]
+        report = json.loads(run(*words, build / "native"))
+        self.assertEqual([plugin["brings"] for plugin in report["plugins"]],
+                         [["queue fast_forward"], ["policy broad_first"], ["placement octants"], ["workload scanner"]])
+        self.assertEqual(report["links"][0]["queue"], "fast_forward")
+        self.assertEqual((report["rays"]["by_kind"]["camera"], report["rays"]["lost"]), (2000, 0))
+        cycles = json.loads(run(*words, build / "cycle", "--set", "engine.kind=cycle", "--set",
+                                "topology.link.queue=spsc_ring"))
+        self.assertEqual(report["digest"], cycles["digest"])
+        run(self.program, "stress", "--plugin", build / "libown_queue.so", "--queue", "fast_forward", "--pattern",
+            "stream", "--messages", "20000", "--seconds", "1", "--out", build / "stress")
 
 
 if __name__ == "__main__":

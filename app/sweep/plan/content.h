@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/config/fields/engine.h"
 #include "core/config/fields/scene.h"
 #include "core/config/fields/workload.h"
 
@@ -18,9 +19,9 @@ class ContentDigests {
   explicit ContentDigests(std::filesystem::path config_folder, bool read_again = false)
       : folder_(std::move(config_folder)), read_again_(read_again) {}
 
-  /// The digest of the scene's file, the files that it names, and a list of rays; empty if the configuration names
-  /// none. Throws FileError for files that cannot be read.
-  std::string of(const SceneConfig& scene, const WorkloadConfig& workload);
+  /// The digest of the plugins, the scene's file, the files that it names, and a list of rays; empty if the
+  /// configuration names none. Throws FileError for files that cannot be read.
+  std::string of(const EngineConfig& engine, const SceneConfig& scene, const WorkloadConfig& workload);
 
  private:
   const std::string& of_file(const std::string& name);

@@ -84,7 +84,9 @@ SweepPoint PointMaker::make(const Choice& choice) {
   config.erase("vary");
   if (located.config.engine.kind == EngineKind::kCycle) config["engine"].erase("threads");  // changes no result
   const nlohmann::ordered_json all{
-      {"program", program_}, {"config", config}, {"files", content_.of(located.config.scene, located.config.workload)}};
+      {"program", program_},
+      {"config", config},
+      {"files", content_.of(located.config.engine, located.config.scene, located.config.workload)}};
   point.digest = bytes_digest(all.dump());
   return point;
 }

@@ -36,6 +36,9 @@ inline constexpr auto kEnumNames<Policy> = [] {
       {{kFullest, "fullest"}, {kOldest, "oldest"}, {kNewest, "newest"}, {kDeepest, "deepest"}, {kNearest, "nearest"}});
 }();
 
+template <>
+inline constexpr std::string_view kAddedAs<Policy> = "policy";
+
 enum class Select { kStrict, kFullFirst };
 template <>
 inline constexpr auto kEnumNames<Select> = [] {

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
@@ -31,6 +33,7 @@ struct EngineConfig {
   EngineTransport transport = EngineTransport::kLocal;
   std::int64_t memory_limit_mib = 0;  ///< 0: none
   bool what_if = true;
+  std::vector<std::string> plugins;  ///< paths, relative to the config's folder, then to the working one
 };
 
 /// The clocks of the machine: of the resources, and of the network between them.
@@ -63,6 +66,9 @@ void describe(V& v, EngineConfig& c) {
       "what_if", c.what_if, "",
       "The cycle engine finds the bottleneck: it simulates a part of the rays again, each time with one class of parts "
       "relaxed.");
+  v.texts("plugins", c.plugins,
+          "Shared libraries that bring queues, policies, placements or workloads, whose names other keys then take. "
+          "Their paths are relative to the config's folder, then to the working one.");
 }
 
 template <class V>

@@ -19,6 +19,7 @@ namespace carousel::config {
 //   section_or_number(key, struct, meaning)     a bare number stands for {units: number}
 //   list(key, vector of struct, meaning)
 //   choices(key, vector of enum, meaning)
+//   texts(key, vector of texts, meaning)
 //   effects, workload, vary(key, value, meaning)   the three with a syntax of their own
 // A row goes on with what else is known of its key (core/config/fields/row.h).
 

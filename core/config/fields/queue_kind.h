@@ -18,6 +18,9 @@ inline constexpr auto kEnumNames<QueueKind> = [] {
                            {kMutex, "mutex"}});
 }();
 
+template <>
+inline constexpr std::string_view kAddedAs<QueueKind> = "queue";
+
 /// A queue that hands rays over between threads of the native engine.
 struct RayQueueConfig {
   QueueKind kind = QueueKind::kMpmcRing;

@@ -16,6 +16,9 @@ inline constexpr auto kEnumNames<Placement> = [] {
       {{kBalanced, "balanced"}, {kRoundRobin, "round_robin"}, {kFirstTaker, "first_taker"}, {kAddressed, "addressed"}});
 }();
 
+template <>
+inline constexpr std::string_view kAddedAs<Placement> = "placement";
+
 enum class Query { kClosest, kAny, kAll };
 template <>
 inline constexpr auto kEnumNames<Query> = [] {

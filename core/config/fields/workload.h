@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <string>
+#include <string_view>
 
 #include "core/config/fields/field.h"
 
@@ -39,11 +41,18 @@ inline constexpr auto kEnumNames<TrafficConfig::SourceQueues> = [] {
   return names<TrafficConfig::SourceQueues>({{kShared, "shared"}, {kPerDirection, "per_direction"}});
 }();
 
+/// A workload of a plugin; there is none of this program.
+enum class OwnWorkload : std::uint32_t {};
+template <>
+inline constexpr std::string_view kAddedAs<OwnWorkload> = "workload";
+
 struct WorkloadConfig {
-  enum class Kind { kRays, kRaysFrom, kTraffic, kMemoryTrace } kind = Kind::kRays;
+  enum class Kind { kRays, kRaysFrom, kTraffic, kMemoryTrace, kPlugin } kind = Kind::kRays;
   std::string rays_from;     ///< ray CSV; its path is relative to the config's folder, then to the working one
   std::string memory_trace;  ///< CSV of memory requests, likewise
   TrafficConfig traffic;
+  OwnWorkload own{};                      ///< with kPlugin
+  std::map<std::string, double> options;  ///< of that workload, all that it has
 };
 
 namespace config {

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <map>
 #include <tuple>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include "core/config/graph/graph.h"
 #include "core/config/reader.h"
 #include "core/config/tree/tree.h"
+#include "core/plugin/open_plugin.h"
 #include "core/system/input_file.h"
 
 namespace carousel {
@@ -69,6 +74,46 @@ void skip_schema_line(config::Node& root, std::vector<ConfigIssue>& issues) {
   root.members.erase(line);
 }
 
+/// Opens the plugins that the tree names, in the order of the list, and returns their files: their names count in what
+/// is read next. What is wrong with the list itself the reader says.
+std::vector<std::string> open_plugins(const config::Node& root, const std::string& source,
+                                      std::vector<ConfigIssue>& issues) {
+  std::vector<std::string> files;
+  std::map<std::pair<std::string, std::string>, std::string> seen;  // what and name, and the file that has brought it
+  const config::Node* const engine = root.find("engine");
+  const config::Node* const list = engine == nullptr ? nullptr : engine->find("plugins");
+  for (std::size_t i = 0; list != nullptr && i < list->items.size(); ++i) {
+    const config::Node& item = list->items[i];
+    if (item.text.empty()) continue;
+    const auto wrong = [&](std::string message) {
+      issues.push_back({item.position, fmt::format("engine.plugins.{}", i), std::move(message)});
+    };
+    const std::filesystem::path file = plugin_file(std::filesystem::path(source).parent_path(), item.text);
+    if (std::error_code ignored; !std::filesystem::exists(file, ignored)) {
+      wrong(
+          fmt::format("expected a plugin beside the configuration or in the working directory, found '{}', which is "
+                      "not there",
+                      item.text));
+      continue;
+    }
+    try {
+      const Plugin& plugin = open_plugin(file);
+      if (std::find(files.begin(), files.end(), plugin.file.string()) != files.end()) {
+        wrong(fmt::format("the plugin {} is named twice", plugin.file.string()));
+        continue;
+      }
+      files.push_back(plugin.file.string());
+      for (const Plugin::Part& part : plugin.parts)
+        if (const auto [other, added] = seen.emplace(std::pair(part.what, part.name), files.back()); !added)
+          wrong(fmt::format("{} brings a {} of the name {}, which {} has brought", files.back(), part.what, part.name,
+                            other->second));
+    } catch (const PluginError& error) {
+      wrong(error.what());
+    }
+  }
+  return files;
+}
+
 LocatedConfig read_fields(const ConfigText& source, std::span<const std::string> sets,
                           std::vector<ConfigIssue>& issues) {
   config::Node root = config::parse_tree(source.text, source.name, issues);
@@ -77,7 +122,8 @@ LocatedConfig read_fields(const ConfigText& source, std::span<const std::string>
   if (root.kind == config::Node::Kind::kMap)
     for (const std::string& set : sets) config::apply_set(root, set, issues);
   LocatedConfig out{{}, KeyPositions(root, source.name)};
-  config::Reader(issues, read_base_testers(root)).read(root, out.config);
+  const std::vector<std::string> plugins = open_plugins(root, source.name, issues);
+  config::Reader(issues, read_base_testers(root), plugins).read(root, out.config);
   imply(root, out.config);
   return out;
 }

@@ -172,6 +172,8 @@ class Rules {
     if (c.verify == Verify::kEffects && c.workload.kind == WorkloadConfig::Kind::kRaysFrom)
       issue("verify",
             "a list of rays is not shaded, so effects change nothing; expected none or reference, found effects");
+    if (c.verify == Verify::kEffects && c.workload.kind == WorkloadConfig::Kind::kPlugin)
+      issue("verify", "the rays of a plugin have no effects of light; expected none or reference, found effects");
   }
 
   void effects_are_known() {
@@ -219,6 +221,9 @@ class Rules {
     if (c.workload.kind == Kind::kTraffic || c.workload.kind == Kind::kMemoryTrace)
       issue("sampling.fraction",
             fmt::format("this workload has no rays to draw from; expected 1, found {}", c.sampling.fraction));
+    if (c.workload.kind == Kind::kPlugin)
+      issue("sampling.fraction",
+            fmt::format("the rays of a plugin are not drawn from; expected 1, found {}", c.sampling.fraction));
     if (c.workload.kind == Kind::kRaysFrom && c.sampling.strata)
       issue("sampling.strata",
             fmt::format("the rays of a list are drawn in runs of 64, a run a stratum; expected auto{}; "

@@ -3,11 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <deque>
+#include <memory>
+#include <utility>
 
 #include "core/config/fields/collections.h"
 #include "core/system/error.h"
-#include "core/types/enum_names.h"
+#include "core/types/added_names.h"
 #include "ringbus/resource/collections/priority_lists.h"
 
 namespace carousel::ringbus {
@@ -51,29 +52,20 @@ constexpr std::array kPolicies{
 };
 static_assert(kPolicies.size() == kEnumNames<Policy>.size(), "a row for each policy");
 
-/// Policies of register_policy(). A row keeps its address, since resources refer to it.
-std::deque<IssuePolicy>& registered() {
-  static std::deque<IssuePolicy> rows;
-  return rows;
-}
-
-const IssuePolicy* find_row(const auto& rows, Policy policy) {
-  const auto row = std::find_if(rows.begin(), rows.end(), [&](const IssuePolicy& r) { return r.policy == policy; });
-  return row == rows.end() ? nullptr : &*row;
-}
-
 }  // namespace
 
 const IssuePolicy& issue_policy(Policy policy) {
-  if (const IssuePolicy* row = find_row(kPolicies, policy)) return *row;
-  if (const IssuePolicy* row = find_row(registered(), policy)) return *row;
+  const auto row =
+      std::find_if(kPolicies.begin(), kPolicies.end(), [&](const IssuePolicy& r) { return r.policy == policy; });
+  if (row != kPolicies.end()) return *row;
+  if (const auto* own = added_body<IssuePolicy>(policy)) return *own;
   throw SimulationError("no such policy of collections");
 }
 
-Policy register_policy(IssuePolicy own) {
-  own.policy = static_cast<Policy>(kPolicies.size() + registered().size());
-  registered().push_back(own);
-  return own.policy;
+Policy register_policy(std::string name, const IssuePolicy& own) {
+  for (const auto& [known, policy] : named_values<Policy>({}))
+    if (known == name) throw SimulationError("there is a policy of the name " + name + " already");
+  return add_named<Policy>({std::move(name), "", std::make_shared<IssuePolicy>(own)});
 }
 
 }  // namespace carousel::ringbus

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "accel/structure/node.h"
 #include "core/config/fields/collections.h"
@@ -38,8 +39,9 @@ struct IssuePolicy {
 const IssuePolicy& issue_policy(Policy policy);
 
 /// Adds a policy that is not in the table, for programs of one's own, and returns its value for
-/// `Config::collections.policy`; `own.policy` is ignored. It has no name in configuration files. Call it before any run
-/// starts, from one thread.
-Policy register_policy(IssuePolicy own);
+/// `Config::collections.policy`, of which configurations know it by its name from now on; `own.policy` is ignored.
+/// Throws a SimulationError for a name that there is already. A plugin brings its policies itself
+/// (ringbus/plugin/bring.h).
+Policy register_policy(std::string name, const IssuePolicy& own);
 
 }  // namespace carousel::ringbus

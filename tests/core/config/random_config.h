@@ -101,6 +101,7 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
     value.resize(pick(3));
     for (E& item : value) choice("", item, "");
   }
+  void texts(std::string_view, std::vector<std::string>& value, const char*) { value.clear(); }  // which are opened
   void effects(std::string_view, ShadingConfig::Effects& value, const char*) {
     using Choice = ShadingConfig::Effects::Choice;
     value.choice = std::array{Choice::kAuto, Choice::kAll, Choice::kList}[pick(3)];

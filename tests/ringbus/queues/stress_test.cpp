@@ -85,7 +85,7 @@ INSTANTIATE_TEST_SUITE_P(Stress, EveryPattern, testing::ValuesIn([] {
 
 TEST_P(EveryPattern, SoundQueuesComeThrough) {
   std::vector<QueueUnderTest> queues{queue_under_test<OwnQueue>("own")};
-  for (const QueueKind kind : queue_kinds()) queues.push_back(built_in_queue(kind));
+  for (const QueueKind kind : queue_kinds()) queues.push_back(named_queue(kind));
   for (const QueueUnderTest& queue : queues) {
     if (!pattern_fits(queue, GetParam())) continue;
     SCOPED_TRACE(queue.name);
@@ -107,8 +107,8 @@ TEST(Stress, SizesOfMessagesComeThrough) {
   for (const std::size_t bytes : {kSmall, kPacket}) {
     TrialOptions options = short_trial(Pattern::kBatches);
     options.message_bytes = bytes;
-    EXPECT_EQ(run_trial(built_in_queue(QueueKind::kSpscRing), options).violations.names(), "");
-    EXPECT_EQ(run_trial(built_in_queue(QueueKind::kMpmcRing), options).violations.names(), "");
+    EXPECT_EQ(run_trial(named_queue(QueueKind::kSpscRing), options).violations.names(), "");
+    EXPECT_EQ(run_trial(named_queue(QueueKind::kMpmcRing), options).violations.names(), "");
   }
 }
 
@@ -156,14 +156,14 @@ TEST(Stress, CatchesWhatIsStuckAndCallsThatNeverReturn) {
 }
 
 TEST(Stress, SlowConsumersPushBack) {
-  const TrialResult slow = run_trial(built_in_queue(QueueKind::kSpscRing), full_trial(Pattern::kSlowConsumer));
+  const TrialResult slow = run_trial(named_queue(QueueKind::kSpscRing), full_trial(Pattern::kSlowConsumer));
   EXPECT_GT(slow.push_refusals, 0u);
   EXPECT_GT(slow.blocked_seconds, 0);
   EXPECT_LE(slow.blocked_seconds, slow.producer_seconds);
 }
 
 TEST(Stress, EveryQueueMeetsEveryPatternItFitsAsOftenAsTheOthers) {
-  const std::vector<QueueUnderTest> queues{built_in_queue(QueueKind::kSpscRing), built_in_queue(QueueKind::kMutex),
+  const std::vector<QueueUnderTest> queues{named_queue(QueueKind::kSpscRing), named_queue(QueueKind::kMutex),
                                            queue_under_test<Reorders>("reorders")};
   StressOptions options;
   options.patterns = {Pattern::kStream, Pattern::kManyToMany};

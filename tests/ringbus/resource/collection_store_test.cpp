@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/config/config.h"
+#include "core/config/load/load.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
 
@@ -63,9 +63,15 @@ TEST(IssuePolicy, EveryNameHasItsRow) {
 TEST(IssuePolicy, TakesPoliciesThatAreNotInTheTable) {
   // The narrowest collection first, which no built-in policy is.
   const auto narrowest = [](const CollectionFacts& c, const PolicyScale&) { return std::min(c.rays, 255u); };
-  const Policy own = register_policy({.policy = Policy::kOldest, .bucket = narrowest});
-  const Policy other = register_policy({.policy = Policy::kOldest, .bucket = narrowest, .newest_first = true});
+  const Policy own = register_policy("narrowest", {.policy = Policy::kOldest, .bucket = narrowest});
+  const Policy other =
+      register_policy("narrowest_newest", {.policy = Policy::kOldest, .bucket = narrowest, .newest_first = true});
   EXPECT_NE(own, other);
+  EXPECT_EQ(enum_name(other), "narrowest_newest");
+  const std::string text = "scene: {builtin: cornell}\ncollections: {policy: narrowest}\n";
+  EXPECT_EQ(load_config({text, "own.yaml"}).config.collections.policy, own);
+  EXPECT_THROW(register_policy("narrowest", {.policy = {}, .bucket = narrowest}), SimulationError);
+  EXPECT_THROW(register_policy("oldest", {.policy = {}, .bucket = narrowest}), SimulationError);
   EXPECT_FALSE(issue_policy(own).newest_first);
   EXPECT_TRUE(issue_policy(other).newest_first);
   CollectionStore store(settings(own, Select::kStrict));
