@@ -148,6 +148,20 @@ class Install(unittest.TestCase):
         run(self.program, "stress", "--plugin", build / "libown_queue.so", "--queue", "fast_forward", "--pattern",
             "stream", "--messages", "20000", "--seconds", "1", "--out", build / "stress")
 
+    def test_the_page_of_plugins_works(self):
+        page = (self.prefix / "share/doc/carousel/plugins.md").read_text()
+        blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
+        self.assertEqual(len(blocks), 2)
+        folder = Path(self.folder.name) / "page"
+        folder.mkdir()
+        environment = {**os.environ, "PATH": f"{self.program.parent}:{os.environ['PATH']}",
+                       "CMAKE_PREFIX_PATH": str(self.prefix)}
+        printed = [run("bash", "-euo", "pipefail", "-c", text, cwd=folder, env=environment) for text in blocks]
+        self.assertIn("narrowest", printed[1])
+        report = json.loads((folder / "mine/report.json").read_text())
+        self.assertEqual(report["plugins"][0]["brings"], ["policy narrowest", "placement roomiest"])
+        self.assertEqual(report["config"]["rays"]["placement"], "roomiest")
+
 
 if __name__ == "__main__":
     unittest.main()
