@@ -132,7 +132,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   r.carousel = program_info();
   r.config = config_json(prepared.absolute_config());
   for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
-  r.plugins = plugins_section(prepared.config().engine, prepared.config_folder);
+  r.plugins = plugins_section(prepared.located.plugins);
   r.scene = summary(prepared);
   r.structure = structure(prepared);
   if (!prepared.accel.groups.empty()) r.levels = levels_section(prepared.accel);

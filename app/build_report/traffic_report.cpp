@@ -84,7 +84,7 @@ report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficRe
   r.carousel = program_info();
   r.config = config_json(prepared.absolute_config());
   for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
-  r.plugins = plugins_section(prepared.config().engine, prepared.config_folder);
+  r.plugins = plugins_section(prepared.located.plugins);
   r.scene.name = "none";
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.cycles = result.cycles;

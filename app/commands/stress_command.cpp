@@ -158,8 +158,8 @@ int stress_command(const StressArguments& arguments) {
   std::unique_ptr<const Prepared> prepared;
   if (!arguments.config.empty()) {
     prepared.reset(new Prepared(prepare(arguments, {}, false, [&](const Prepared& of) {
-      for (std::string& file : plugins_of(of.config().engine, of.config_folder))
-        if (std::find(plugins.begin(), plugins.end(), file) == plugins.end()) plugins.push_back(std::move(file));
+      for (const std::string& file : of.located.plugins)
+        if (std::find(plugins.begin(), plugins.end(), file) == plugins.end()) plugins.push_back(file);
       choose_queues();
       const Config config = of.absolute_config();
       output.emplace(folder, &config, arguments.force, Results::kStress);

@@ -17,18 +17,10 @@ std::vector<std::string> open_plugins(const std::vector<std::string>& names) {
   return out;
 }
 
-std::vector<std::string> plugins_of(const EngineConfig& engine, const std::filesystem::path& config_folder) {
-  std::vector<std::string> out;
-  for (const std::string& name : engine.plugins)
-    out.push_back(open_plugin(plugin_file(config_folder, name)).file.string());
-  return out;
-}
-
-std::optional<std::vector<report::Plugin>> plugins_section(const EngineConfig& engine,
-                                                           const std::filesystem::path& config_folder) {
-  if (engine.plugins.empty()) return std::nullopt;
+std::optional<std::vector<report::Plugin>> plugins_section(const std::vector<std::string>& files) {
+  if (files.empty()) return std::nullopt;
   std::vector<report::Plugin> out;
-  for (const std::string& file : plugins_of(engine, config_folder)) {
+  for (const std::string& file : files) {
     const Plugin& plugin = open_plugin(file);
     report::Plugin& section = out.emplace_back();
     section.file = plugin.file.string();

@@ -17,7 +17,6 @@
 #include "app/area/machine_area.h"
 #include "app/host/log.h"
 #include "app/host/machine_info.h"
-#include "app/plugins/plugins.h"
 #include "app/run/memory_need.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"
@@ -282,9 +281,8 @@ Config Prepared::absolute_config() const {
     const std::string path = std::filesystem::absolute(find_beside(config_folder, *name), ignored).string();
     if (plain_text(path) == path) *name = path;  // others cannot stand in a file of text
   }
-  const std::vector<std::string> plugins = plugins_of(out.engine, config_folder);
-  for (std::size_t i = 0; i < plugins.size(); ++i)
-    if (plain_text(plugins[i]) == plugins[i]) out.engine.plugins[i] = plugins[i];
+  for (std::size_t i = 0; i < located.plugins.size(); ++i)
+    if (plain_text(located.plugins[i]) == located.plugins[i]) out.engine.plugins[i] = located.plugins[i];
   return out;
 }
 

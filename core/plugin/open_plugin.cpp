@@ -121,14 +121,17 @@ OpenedPlugin open_plugin_file(const fs::path& file) {
 const Plugin& open_plugin(const fs::path& file) {
   static std::mutex mutex;
   static std::map<fs::path, OpenedPlugin> opened;
-  std::error_code error;
-  const fs::path real = fs::canonical(file, error);
-  if (error) throw PluginError(fmt::format("the plugin {} is not there: {}", file.string(), error.message()));
   const std::lock_guard lock(mutex);
-  auto found = opened.find(real);
-  if (found == opened.end()) found = opened.emplace(real, open_plugin_file(real)).first;
+  auto found = opened.find(file);  // one that is open may be gone since
+  if (found == opened.end()) {
+    std::error_code error;
+    const fs::path real = fs::canonical(file, error);
+    if (error) throw PluginError(fmt::format("the plugin {} is not there: {}", file.string(), error.message()));
+    found = opened.find(real);
+    if (found == opened.end()) found = opened.emplace(real, open_plugin_file(real)).first;
+  }
   if (!found->second.fault.empty())
-    throw PluginError(fmt::format("the plugin {} cannot be opened: {}", real.string(), found->second.fault));
+    throw PluginError(fmt::format("the plugin {} cannot be opened: {}", found->first.string(), found->second.fault));
   return found->second.plugin;
 }
 

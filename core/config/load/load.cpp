@@ -122,8 +122,8 @@ LocatedConfig read_fields(const ConfigText& source, std::span<const std::string>
   if (root.kind == config::Node::Kind::kMap)
     for (const std::string& set : sets) config::apply_set(root, set, issues);
   LocatedConfig out{{}, KeyPositions(root, source.name)};
-  const std::vector<std::string> plugins = open_plugins(root, source.name, issues);
-  config::Reader(issues, read_base_testers(root), plugins).read(root, out.config);
+  out.plugins = open_plugins(root, source.name, issues);
+  config::Reader(issues, read_base_testers(root), out.plugins).read(root, out.config);
   imply(root, out.config);
   return out;
 }

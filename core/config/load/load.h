@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "core/config/config.h"
 #include "core/config/load/validate.h"
@@ -14,6 +15,7 @@ namespace carousel {
 struct LocatedConfig {
   Config config;
   KeyPositions positions;
+  std::vector<std::string> plugins{};  ///< the files of engine.plugins, which are open (core/plugin/open_plugin.h)
 };
 
 /// The text of a configuration: YAML, or JSON when `name` ends in .json or the text is a JSON object.
