@@ -75,6 +75,11 @@ void leave_folder_out(Json& text) {
 
 /// In which folders a host has the files is its affair.
 void leave_folders_out(Json& report) {
+  if (const Json::json_pointer at("/config/engine/plugins"); report.contains(at) && report[at].is_array())
+    for (Json& plugin : report[at]) leave_folder_out(plugin);
+  if (report.contains("plugins") && report["plugins"].is_array())
+    for (Json& plugin : report["plugins"])
+      if (plugin.is_object() && plugin.contains("file")) leave_folder_out(plugin["file"]);
   for (const char* file : {"/config/scene/file", "/config/workload/rays_from", "/config/workload/memory_trace"})
     if (const Json::json_pointer at(file); report.contains(at) && report[at].is_string())
       report[at] = std::filesystem::path(report[at].get<std::string>()).filename().string();
