@@ -123,12 +123,10 @@ class Drawing {
   void add_hop(std::string_view key, std::uint32_t at, std::uint32_t to, std::uint32_t next) {
     const auto name = [&](std::uint32_t node) -> const std::string& { return graph_.nodes[node].name; };
     if (to >= graph_.resources)
-      return way_issue(key == "next" ? "to" : key,
-                       fmt::format("a way ends at a resource, and {} is none", name(to)));
-    const auto link =
-        std::ranges::find_if(graph_.links, [&](const Graph::Link& one) {
-          return one.from == at && one.to == next && one.carries_any({Carried::kPackets});
-        });
+      return way_issue(key == "next" ? "to" : key, fmt::format("a way ends at a resource, and {} is none", name(to)));
+    const auto link = std::ranges::find_if(graph_.links, [&](const Graph::Link& one) {
+      return one.from == at && one.to == next && one.carries_any({Carried::kPackets});
+    });
     if (link == graph_.links.end())
       return way_issue(key, fmt::format("expected nodes with a link between them, found {} and {}, which have none",
                                         name(at), name(next)));

@@ -81,6 +81,11 @@ void check_parts(const Config& config, const Graph& graph, const DrawnParts& par
   refuse("memory.film", memory.film != Free::kFree, "free, found memory");
   refuse("memory.sky_map", memory.sky_map != Free::kFree && config.scene.sky && !config.scene.sky->file.empty(),
          "free, found memory");
+  Parts::for_each([&]<class P>(std::size_t) {
+    if (P::is_built(config.parts.of<P>()))
+      breach(fmt::format("{}.{}", P::kSection, P::kSwitch),
+             "caches that are drawn have no such part yet; expected none");
+  });
   const bool banks = std::ranges::any_of(parts.caches, [](const Banks& group) { return group.nodes.size() > 1; });
   if (banks && parts.memories.nodes.empty())
     breach("topology.nodes",
@@ -98,6 +103,12 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   bool built = true;
   for (std::size_t i = 0; i < c.nodes.size(); ++i)
     built &= check_node(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
+  for (std::size_t i = 0; i < c.nodes.size() && config.engine.kind == EngineKind::kNative; ++i)
+    if (const GraphNodeKind kind = c.nodes[i].kind; kind != GraphNodeKind::kResource && kind != GraphNodeKind::kRouter)
+      breach(
+          fmt::format("topology.nodes.{}.kind", i),
+          fmt::format("the native engine draws resources and routers; expected these, or engine.kind: cycle; found {}",
+                      enum_name(kind)));
   const std::int64_t resources = drawn_resources(c);
   if (resources == 0) return breach("topology.nodes", "expected a resource at least, such as {name: r, count: 8}");
   if (resources <= kMaxResources && resources != c.resources)

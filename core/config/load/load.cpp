@@ -46,8 +46,8 @@ TestersConfig read_base_testers(const config::Node& root) {
 }
 
 /// A shape may imply a value where the file says nothing: point_to_point has no other visits than those of owners, a
-/// graph would hardly have, and its nodes are its resources, by whose names overrides may go. The clock of the resources
-/// has two names.
+/// graph would hardly have, and its nodes are its resources, by whose names overrides may go. The clock of the
+/// resources has two names.
 void imply(const config::Node& root, Config& config) {
   const config::Node* engine = root.find("engine");
   if (config.clocks.core && (engine == nullptr || engine->find("clock_mhz") == nullptr))

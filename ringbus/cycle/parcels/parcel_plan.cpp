@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
-#include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/graph/routes.h"
+#include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/wire_length.h"
 
 namespace carousel::ringbus {

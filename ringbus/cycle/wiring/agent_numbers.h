@@ -6,8 +6,8 @@
 namespace carousel::ringbus::cycle {
 
 /// The numbers of a machine's agents: the nodes of its network (resources, then hubs), the L2s, the resources' own
-/// caches if they have any, the memories, ray control with shading, where parts are drawn the relays of all nodes of the
-/// graph and the links that packets share with others, and the parts that declare themselves.
+/// caches if they have any, the memories, ray control with shading, where parts are drawn the relays of all nodes of
+/// the graph and the links that packets share with others, and the parts that declare themselves.
 struct AgentNumbers {
   std::uint32_t nodes = 0, caches = 0, own_caches = 0;
   std::uint32_t shared_by = 1;  ///< resources of an L2

@@ -136,9 +136,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     for (Channel<FetchRequest>* ahead : parts_.ahead_at(c)) others[c].push_back({ahead});
   DrawnAskers askers;
   if (parcels_) askers = parcels_->askers();
-  memory_ = std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
-                                           config.engine.clock_mhz, cache_clients, others,
-                                           parcels_ ? &askers : nullptr);
+  memory_ =
+      std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
+                                     config.engine.clock_mhz, cache_clients, others, parcels_ ? &askers : nullptr);
   if (parcels_) {
     parcels_->join(*memory_);
     parcels_->sample(observed.samples);
