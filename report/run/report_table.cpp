@@ -259,12 +259,13 @@ void bottleneck_lines(Table& table, const Bottleneck& b) {
   if (b.rays > 0 && !b.whole_frame)
     table.line("", "by {} of the frame's rays, which foretell its cycles to {:+.1f} %", grouped(b.rays),
                100 * b.deviation);
-  if (b.phases.size() < 2) return;
   for (const BottleneckPhase& phase : b.phases)
-    table.line(&phase == b.phases.data() ? "phases" : "", "{} to {} of the rays, {} of the time: {}",
-               percent(phase.begin), percent(phase.end), percent(phase.time),
-               phase.limits.empty() ? "no class alone"
-                                    : fmt::format("{}, {} gains {}", phase.limits, phase.action, percent(phase.gain)));
+    if (b.phases.size() > 1)
+      table.line(&phase == b.phases.data() ? "phases" : "", "{} to {} of the rays, {} of the time: {}",
+                 percent(phase.begin), percent(phase.end), percent(phase.time),
+                 phase.limits.empty()
+                     ? "no class alone"
+                     : fmt::format("{}, {} gains {}", phase.limits, phase.action, percent(phase.gain)));
 }
 
 void energy_lines(Table& table, const Report& report) {
