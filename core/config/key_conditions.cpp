@@ -223,7 +223,7 @@ constexpr Row kRows[] = {
 
 /// The keys that a workload without rays feels; its machine has no other parts.
 struct Workloads {
-  Workload kind;
+  WorkloadKind kind;
   std::string_view otherwise;
   std::span<const std::string_view> keys;
 };
@@ -263,8 +263,9 @@ constexpr std::string_view kOfMemoryTrace[] = {"schema_version",
                                                "clocks.core",
                                                "vary",
                                                "verify"};
-constexpr Workloads kWithoutRays[] = {{Workload::kTraffic, "synthetic traffic does not meet it", kOfTraffic},
-                                      {Workload::kMemoryTrace, "requests to memory do not meet it", kOfMemoryTrace}};
+constexpr Workloads kWithoutRays[] = {
+    {WorkloadKind::kTraffic, "synthetic traffic does not meet it", kOfTraffic},
+    {WorkloadKind::kMemoryTrace, "requests to memory do not meet it", kOfMemoryTrace}};
 
 /// True if `key` is `section` or lies below it.
 bool lies_in(std::string_view key, std::string_view section) {

@@ -13,7 +13,7 @@ namespace carousel::conditions {
 
 using C = Config;
 using S = SceneFacts;
-using Workload = WorkloadConfig::Kind;
+using WorkloadKind = WorkloadConfig::Kind;
 using Fault = FaultsConfig::Resource::Kind;
 
 /// A condition on a machine, and the clause that says why a machine does not meet it.
@@ -23,7 +23,7 @@ struct Condition {
 };
 
 constexpr bool meets_rays(const C& c) {
-  return c.workload.kind != Workload::kTraffic && c.workload.kind != Workload::kMemoryTrace;
+  return c.workload.kind != WorkloadKind::kTraffic && c.workload.kind != WorkloadKind::kMemoryTrace;
 }
 constexpr bool exchanges_packets(const C& c) {
   return properties_of(c.topology.shape).has_packets;
@@ -67,16 +67,16 @@ inline constexpr Condition kNative{[](const C& c, const S&) { return c.engine.ki
 inline constexpr Condition kClock{
     [](const C& c, const S&) { return c.engine.kind == EngineKind::kCycle || c.faults.any(); },
     "the native engine has no clock"};
-inline constexpr Condition kPicture{[](const C& c, const S&) { return c.workload.kind == Workload::kRays; },
+inline constexpr Condition kPicture{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRays; },
                                     "the workload has no picture"};
-inline constexpr Condition kFlags{[](const C& c, const S&) { return c.workload.kind == Workload::kRays; },
+inline constexpr Condition kFlags{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRays; },
                                   "rays of a file or of a plugin carry no such flags"};
-inline constexpr Condition kDrawn{[](const C& c, const S&) { return c.workload.kind != Workload::kRaysFrom; },
+inline constexpr Condition kDrawn{[](const C& c, const S&) { return c.workload.kind != WorkloadKind::kRaysFrom; },
                                   "rays of a file are not drawn at random"};
 inline constexpr Condition kLatency{
-    [](const C& c, const S&) { return has_pipe(c) || c.workload.kind != Workload::kMemoryTrace; },
+    [](const C& c, const S&) { return has_pipe(c) || c.workload.kind != WorkloadKind::kMemoryTrace; },
     "the memory alone has banks"};
-inline constexpr Condition kList{[](const C& c, const S&) { return c.workload.kind == Workload::kRaysFrom; },
+inline constexpr Condition kList{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRaysFrom; },
                                  "the rays are of no file"};
 inline constexpr Condition kTrafficHotspot{
     [](const C& c, const S&) { return c.workload.traffic.pattern == TrafficConfig::Pattern::kHotspot; },
@@ -99,7 +99,7 @@ inline constexpr Condition kSeveralParts{
     [](const C& c, const S&) { return !config::stop_ring_entry(c.topology).has_value(); },
     "the stops of a ring are clocked together, on one thread"};
 inline constexpr Condition kNetworkClock{[](const C& c, const S&) {
-                                           return c.workload.kind == Workload::kTraffic &&
+                                           return c.workload.kind == WorkloadKind::kTraffic &&
                                                   c.topology.shape == TopologyShape::kGraph;
                                          },
                                          "the network has the clock of the resources"};
@@ -156,7 +156,7 @@ inline constexpr Condition kGivenWays{[](const C& c, const S&) {
 // Rays wait at resources, whose places are those of dispatch and tests, and take one channel.
 inline constexpr Condition kChannels{
     [](const C& c, const S&) {
-      return c.workload.kind == Workload::kTraffic &&
+      return c.workload.kind == WorkloadKind::kTraffic &&
              (c.topology.shape == TopologyShape::kGraph || c.topology.shape == TopologyShape::kHierarchical);
     },
     "virtual channels carry synthetic traffic on graphs"};

@@ -7,6 +7,7 @@
 
 #include "report/run/part_table.h"
 #include "report/run/sampled_table.h"
+#include "report/run/verdict_table.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 
@@ -254,20 +255,6 @@ void cycle_lines(Table& table, const Report& report) {
   }
 }
 
-void bottleneck_lines(Table& table, const Bottleneck& b) {
-  table.line("bottleneck", "{}", b.verdict);
-  if (b.rays > 0 && !b.whole_frame)
-    table.line("", "by {} of the frame's rays, which foretell its cycles to {:+.1f} %", grouped(b.rays),
-               100 * b.deviation);
-  for (const BottleneckPhase& phase : b.phases)
-    if (b.phases.size() > 1)
-      table.line(&phase == b.phases.data() ? "phases" : "", "{} to {} of the rays, {} of the time: {}",
-                 percent(phase.begin), percent(phase.end), percent(phase.time),
-                 phase.limits.empty()
-                     ? "no class alone"
-                     : fmt::format("{}, {} gains {}", phase.limits, phase.action, percent(phase.gain)));
-}
-
 void energy_lines(Table& table, const Report& report) {
   const Energy& e = *report.energy;
   table.line("energy", "{:.4g} nJ a ray   {:.4g} mJ in all   {:.4g} W at the clock   {:.4g} Mrays a joule",
@@ -373,7 +360,7 @@ std::string report_table(const Report& report) {
                scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
                seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
   if (report.engine.cycles && report.throughput) cycle_lines(table, report);
-  if (report.bottleneck) bottleneck_lines(table, *report.bottleneck);
+  if (report.bottleneck) table.text(verdict_table(*report.bottleneck));
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));

@@ -337,7 +337,20 @@ std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std
   std::vector<Nodes> next(graph.nodes.size());
   for (const Graph::Link& link : graph.links) next[link.from].push_back(link.to);
   std::vector<std::vector<bool>> out;
-  for (const std::uint32_t start : starts) out.push_back(reached(graph, next, start));
+  for (const std::uint32_t start : starts) {
+    std::vector<bool>& reached = out.emplace_back(graph.nodes.size());
+    Nodes open{start};
+    reached[start] = true;
+    while (!open.empty()) {
+      const std::uint32_t at = open.back();
+      open.pop_back();
+      for (const std::uint32_t to : next[at]) {
+        if (reached[to]) continue;
+        reached[to] = true;
+        open.push_back(to);
+      }
+    }
+  }
   return out;
 }
 
