@@ -18,7 +18,8 @@ struct Signature {
 };
 
 constexpr PictureFormat kTiff{"tiff", "TIFF"}, kJpeg2000{"jpeg2000", "JPEG 2000"}, kTga{"targa", "TGA"},
-    kDpx{"dpx", "DPX"}, kPnm{"pnm", "PNM"}, kHdr{"hdr", "Radiance HDR"}, kIff{"iff", "IFF"}, kHeif{"heif", "HEIF"};
+    kDpx{"dpx", "DPX"}, kPnm{"pnm", "PNM"}, kHdr{"hdr", "Radiance HDR"}, kIff{"iff", "IFF"}, kZfile{"zfile", "Zfile"},
+    kHeif{"heif", "HEIF"};
 
 // Longer ones first, where one begins another.
 constexpr std::array kSignatures{
@@ -41,7 +42,8 @@ constexpr std::array kSignatures{
     Signature{kIff, 0, "FORM"sv},
     Signature{{"fits", "FITS"}, 0, "SIMPLE  ="sv},
     Signature{{"softimage", "Softimage PIC"}, 0, "\x53\x80\xf6\x34"sv},
-    Signature{{"zfile", "Zfile"}, 0, "\x2f\x08\x67\xab"sv},
+    Signature{kZfile, 0, "\x2f\x08\x67\xab"sv},
+    Signature{kZfile, 0, "\xab\x67\x08\x2f"sv},
     Signature{{"ico", "ICO"}, 0, "\0\0\1\0"sv},
     Signature{kHeif, 4, "ftyphei"sv},
     Signature{kHeif, 4, "ftypavif"sv},

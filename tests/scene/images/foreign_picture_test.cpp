@@ -141,6 +141,96 @@ TEST_F(ForeignPicture, DdsAndPsdAreRead) {
   EXPECT_EQ(decode(psd()).rgba, (std::vector<std::uint8_t>{10, 20, 30, 255, 40, 50, 60, 255}));
 }
 
+/// A picture of Softimage of 2 x 1 pixels, in one packet of three channels: a run of two that differ.
+Bytes softimage() {
+  Bytes out;
+  put(out, 0x5380f634, 4, true);
+  put(out, 0x40600000, 4, true);  // version 3.5
+  out.resize(out.size() + 80);
+  for (const char c : {'P', 'I', 'C', 'T'}) out.push_back(static_cast<unsigned char>(c));
+  put(out, 2, 2, true);
+  put(out, 1, 2, true);
+  put(out, 0x3f800000, 4, true);
+  put(out, 3, 2, true);
+  put(out, 0, 2, true);
+  out.insert(out.end(), {0, 8, 2, 0xe0, 1, 10, 20, 30, 40, 50, 60});
+  return out;
+}
+
+/// A Cineon file of 2 x 1 pixels, three channels of ten bits in a word, by Kodak's description of the format.
+Bytes cineon() {
+  Bytes out;
+  for (const std::uint32_t word : {0x802a5fd7u, 2048u, 1024u, 1024u, 0u, 2056u}) put(out, word, 4, true);
+  out.insert(out.end(), {'V', '4', '.', '5'});
+  out.resize(192);
+  put(out, 3, 2, true);  // orientation, channels
+  put(out, 0, 2, true);
+  for (unsigned channel = 1; channel <= 3; ++channel) {
+    out.insert(out.end(), {0, static_cast<unsigned char>(channel), 10, 0});
+    for (const std::uint32_t word : {2u, 1u, 0u, 0u, 0x447fc000u, 0x4002f1aau}) put(out, word, 4, true);
+  }
+  out.resize(680);
+  out.insert(out.end(), {0, 5, 0, 0});  // by pixels, in words whose two last bits are empty
+  out.resize(2048);
+  const auto word = [](std::uint32_t r, std::uint32_t g, std::uint32_t b) { return r << 22 | g << 12 | b << 2; };
+  put(out, word(0, 512, 1023), 4, true);
+  put(out, word(1023, 100, 4), 4, true);
+  return out;
+}
+
+/// A grey picture of 2 x 1 pixels in DICOM, explicit and little-endian (part 5 of the standard, section 7.1.2).
+Bytes dicom() {
+  Bytes out(128);
+  const auto element = [](Bytes& to, unsigned group, unsigned number, const std::string& kind, std::string value) {
+    if (value.size() % 2 != 0) value += kind == "UI" || kind == "OB" ? '\0' : ' ';
+    put(to, group, 2);
+    put(to, number, 2);
+    to.insert(to.end(), kind.begin(), kind.end());
+    if (kind == "OB") put(to, 0, 2);
+    put(to, static_cast<std::uint32_t>(value.size()), kind == "OB" ? 4 : 2);
+    to.insert(to.end(), value.begin(), value.end());
+  };
+  const auto number = [](unsigned value) { return std::string{static_cast<char>(value), '\0'}; };
+  Bytes meta;
+  element(meta, 2, 1, "OB", std::string("\0\1", 2));
+  element(meta, 2, 2, "UI", "1.2.840.10008.5.1.4.1.1.7");
+  element(meta, 2, 3, "UI", "1.2.3");
+  element(meta, 2, 0x10, "UI", "1.2.840.10008.1.2.1");
+  for (const char c : {'D', 'I', 'C', 'M'}) out.push_back(static_cast<unsigned char>(c));
+  element(out, 2, 0, "UL", number(static_cast<unsigned>(meta.size())) + number(0));
+  out.insert(out.end(), meta.begin(), meta.end());
+  element(out, 0x28, 2, "US", number(1));
+  element(out, 0x28, 4, "CS", "MONOCHROME2");
+  for (const auto& [what, value] :
+       {std::pair{0x10u, 1u}, {0x11u, 2u}, {0x100u, 8u}, {0x101u, 8u}, {0x102u, 7u}, {0x103u, 0u}})
+    element(out, 0x28, what, "US", number(value));
+  element(out, 0x7fe0, 0x10, "OB", std::string("\x32\xc8", 2));
+  return out;
+}
+
+TEST_F(ForeignPicture, FormatsThatTheToolDoesNotWriteAreReadFromTheirDescriptions) {
+  EXPECT_EQ(decode(softimage()).rgba, (std::vector<std::uint8_t>{10, 20, 30, 255, 40, 50, 60, 255}));
+  EXPECT_EQ(decode(dicom()).rgba, (std::vector<std::uint8_t>{50, 50, 50, 255, 200, 200, 200, 255}));
+  const std::vector<std::uint8_t> ten_bits = decode(cineon(), {"", false}).rgba;
+  ASSERT_EQ(ten_bits.size(), 8u);
+  const double expected[] = {0, 512, 1023, 1023, 1023, 100, 4, 1023};
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_NEAR(ten_bits[i], expected[i] * 255 / 1023, 0.51) << i;
+}
+
+TEST_F(ForeignPicture, HeifAvifAndZfileAreRead) {
+  tool(kGradient + " -d uint8 -o a.png -o a.heif -o a.avif --ch 0 -d float -o a.zfile");
+  const Image expected = decode(file("a.png"));
+  for (const char* name : {"a.heif", "a.avif"}) {  // with losses
+    const Image image = decode(file(name), {name});
+    ASSERT_EQ(image.rgba.size(), expected.rgba.size()) << name;
+    for (const std::size_t at : {std::size_t{0}, std::size_t{23}, std::size_t{15 * 24}, std::size_t{16 * 24 - 1}})
+      for (std::size_t c = 4 * at; c < 4 * at + 4; ++c) EXPECT_NEAR(image.rgba[c], expected.rgba[c], 32) << name << c;
+  }
+  const Image depth = decode(file("a.zfile"), {"a.zfile", false});
+  ASSERT_EQ(depth.rgba.size(), expected.rgba.size());
+  for (std::size_t i = 0; i < depth.rgba.size(); i += 4) EXPECT_NEAR(depth.rgba[i], expected.rgba[i], 1) << i;
+}
+
 /// The direct decoders against OpenImageIO's.
 TEST_F(ForeignPicture, DirectDecodersGiveTheTexelsOfOpenImageIO) {
   tool(kGradient +
