@@ -60,7 +60,8 @@ endif()
 find_package(assimp CONFIG QUIET)
 if(assimp_FOUND)
   carousel_module(scenes SOURCES modules/scenes/scenes_module.cpp modules/scenes/read_scene.cpp
-                  modules/scenes/material_map.cpp modules/scenes/source_files.cpp LIBRARIES assimp::assimp)
+                  modules/scenes/material_map.cpp
+                  modules/scenes/motion.cpp modules/scenes/source_files.cpp LIBRARIES assimp::assimp)
 else()
   message(STATUS "No module scenes: libassimp-dev is missing; glTF needs none")
 endif()

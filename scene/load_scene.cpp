@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "core/module/module.h"
 #include "core/system/error.h"
 #include "scene/builtin/builtin.h"
 #include "scene/gltf/import.h"
@@ -46,13 +47,13 @@ Scene load_file(const SceneConfig& config, const std::filesystem::path& config_d
                 const ImageChoice& images, Executor* executor) {
   const std::optional<PoseChoice> pose = pose_of(config);
   const std::filesystem::path file = find_file("scene.file", "a scene file", config.file, config_dir);
-  if (!is_gltf(file)) {
-    if (pose)
-      throw ConfigError(config.animation ? "scene.animation" : "scene.time",
-                        config.file + " is no glTF file; files of other formats are shown in their base pose");
-    return SceneImporter().load(file, warn, images);
+  Scene scene;
+  try {
+    scene = is_gltf(file) ? load_gltf(file, warn, images, pose, executor)
+                          : SceneImporter().load(file, warn, images, pose, executor);
+  } catch (const ModuleError& missing) {
+    throw ConfigError("scene.file", config.file + " is no glTF file, and " + missing.what());
   }
-  Scene scene = load_gltf(file, warn, images, pose, executor);
   if (pose && !scene.motion.any() && warn)
     warn(config.file + ": has no animations, skins or morph targets; scene.time changes nothing");
   return scene;

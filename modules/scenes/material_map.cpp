@@ -151,6 +151,7 @@ std::optional<std::uint32_t> MaterialMap::image_of(const std::string& name) {
   } else {
     image.place = files_.place_of(last);
     image.file = files_.find(name).string();
+    to_.files.push_back(image.file.empty() ? files_.beside(name) : image.file);
     if (image.file.empty()) {
       to_.warnings.push_back((image.place.empty() ? "" : image.place + ": ") + "the image '" + name +
                              "' is not there, in the folder of the model or the two above it; shown without it");

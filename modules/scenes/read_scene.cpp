@@ -19,6 +19,7 @@
 #include <assimp/scene.h>
 
 #include "modules/scenes/material_map.h"
+#include "modules/scenes/motion.h"
 #include "modules/scenes/source_files.h"
 
 namespace carousel::scenes {
@@ -26,6 +27,7 @@ namespace carousel::scenes {
 namespace {
 
 using scene::Imported;
+using scene::ImportQuestion;
 using scene::Mesh;
 using scene::PunctualLight;
 
@@ -70,31 +72,39 @@ Vec3 vector_of(const aiVector3D& v) {
 
 class SceneReader {
  public:
-  SceneReader(const aiScene& from, Imported& to) : from_(from), to_(to) {}
+  SceneReader(const aiScene& from, bool posed, Imported& to) : from_(from), posed_(posed), to_(to) {}
 
   void read() {
-    // Without recursion: a file may nest its nodes as deep as it likes.
-    struct Visit {
-      const aiNode* node;
-      std::int64_t parent;
-    };
-    std::vector<Visit> stack;
-    if (from_.mRootNode != nullptr) stack.push_back({from_.mRootNode, -1});
-    while (!stack.empty()) {
-      const Visit visit = stack.back();
-      stack.pop_back();
-      const auto index = static_cast<std::int64_t>(to_.nodes.size());
-      add(*visit.node, visit.parent);
-      for (unsigned i = visit.node->mNumChildren; i-- > 0;) stack.push_back({visit.node->mChildren[i], index});
-    }
+    for (const Visit& visit : nodes_in_order()) add(*visit.node, visit.parent);
     for (unsigned i = 0; i < from_.mNumCameras; ++i) add(*from_.mCameras[i]);
     for (unsigned i = 0; i < from_.mNumLights; ++i) add(*from_.mLights[i]);
-    list_motion();
+    list_motion(from_, to_);
+    if (posed_) read_animations(from_, named_, to_);
     if (skipped_ > 0) to_.warnings.push_back(std::to_string(skipped_) + " points and lines skipped");
     if (further_sets_) to_.warnings.push_back("further sets of texture coordinates or colours are ignored");
   }
 
  private:
+  struct Visit {
+    const aiNode* node;
+    std::int64_t parent;
+  };
+
+  /// Parents first; names them. Without recursion: a file may nest its nodes as deep as it likes.
+  std::vector<Visit> nodes_in_order() {
+    std::vector<Visit> out, stack;
+    if (from_.mRootNode != nullptr) stack.push_back({from_.mRootNode, -1});
+    while (!stack.empty()) {
+      const Visit visit = stack.back();
+      stack.pop_back();
+      const auto index = static_cast<std::int64_t>(out.size());
+      named_.try_emplace(visit.node->mName.C_Str(), index);
+      out.push_back(visit);
+      for (unsigned i = visit.node->mNumChildren; i-- > 0;) stack.push_back({visit.node->mChildren[i], index});
+    }
+    return out;
+  }
+
   void add(const aiNode& from, std::int64_t parent) {
     Imported::Node node;
     node.name = from.mName.C_Str();
@@ -103,7 +113,6 @@ class SceneReader {
     for (unsigned c = 0; c < 4; ++c)
       for (unsigned r = 0; r < 4; ++r) node.local[4 * c + r] = m[r][c];
     if (from.mNumMeshes > 0) node.mesh = mesh_of({from.mMeshes, from.mMeshes + from.mNumMeshes}, node.name);
-    named_.try_emplace(node.name, static_cast<std::int64_t>(to_.nodes.size()));
     to_.nodes.push_back(std::move(node));
   }
 
@@ -131,6 +140,7 @@ class SceneReader {
     }
     if (to.indices.size() == faces_before) return;
     to.triangle_materials.resize(to.triangle_count(), MaterialId(from.mMaterialIndex));
+    if (posed_) append_bones(from, named_, static_cast<std::uint32_t>(to_.meshes.size()), before, to_);
     for (std::size_t v = 0; v < count; ++v) to.positions.push_back(vector_of(from.mVertices[v]));
     const auto fill = [&](auto& values, bool there, auto filler, auto value) {
       if (!there && values.empty()) return;
@@ -234,30 +244,19 @@ class SceneReader {
     to_.lights.push_back(to);
   }
 
-  void list_motion() {
-    for (unsigned i = 0; i < from_.mNumAnimations; ++i) {
-      const aiAnimation& from = *from_.mAnimations[i];
-      const double rate = from.mTicksPerSecond > 0 ? from.mTicksPerSecond : 1;
-      to_.motion.clips.push_back({from.mName.C_Str(), from.mDuration / rate,
-                                  from.mNumChannels + from.mNumMeshChannels + from.mNumMorphMeshChannels});
-    }
-    for (unsigned i = 0; i < from_.mNumMeshes; ++i) {
-      to_.motion.skins += from_.mMeshes[i]->HasBones() ? 1 : 0;
-      to_.motion.morph_targets += from_.mMeshes[i]->mNumAnimMeshes;
-    }
-  }
-
   const aiScene& from_;
+  const bool posed_;
   Imported& to_;
   std::map<std::vector<unsigned>, std::int64_t> meshes_;
-  std::map<std::string, std::int64_t> named_;
+  NodesByName named_;
   std::size_t skipped_ = 0;
   bool further_sets_ = false;
 };
 
 }  // namespace
 
-Imported read_scene(const std::string& file) {
+Imported read_scene(const ImportQuestion& question) {
+  const std::string& file = question.file;
   Imported out;
   SourceFiles files(file);
   const Listening listening(out.warnings);
@@ -278,8 +277,14 @@ Imported read_scene(const std::string& file) {
   for (const SourceFiles::Missing& each : missing)
     out.warnings.push_back(each.place + ": the file '" + each.name +
                            "' is not there, or is outside the model's folder and the two above it");
+  out.files = files.all();
   MaterialMap(*scene, files, out).map_all();
-  SceneReader(*scene, out).read();
+  if (question.files_only) {
+    Imported files_alone;
+    files_alone.files = std::move(out.files);
+    return files_alone;
+  }
+  SceneReader(*scene, question.posed, out).read();
   return out;
 }
 

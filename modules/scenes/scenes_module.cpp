@@ -59,7 +59,7 @@ std::string answer(std::string_view asked) {
         question.bytes < std::numeric_limits<std::uint64_t>::max() - before ? before + question.bytes : RLIM_INFINITY);
 #endif
   limit(RLIMIT_CPU, seconds_used() + 1 + question.seconds);
-  scene::Imported imported = read_scene(question.file);
+  scene::Imported imported = read_scene(question);
   std::string out;
   scene::WireWriter{out}(imported);
   return out;

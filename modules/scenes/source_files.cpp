@@ -52,6 +52,10 @@ fs::path SourceFiles::find(const std::string& name) const {
   return {};
 }
 
+std::string SourceFiles::beside(const std::string& name) const {
+  return (folder_ / last_part(name)).string();
+}
+
 std::string SourceFiles::place_of(std::string_view name) const {
   if (name.empty()) return "";
   for (const fs::path& file : read_) {
@@ -91,6 +95,13 @@ std::vector<SourceFiles::Missing> SourceFiles::missing() const {
     const bool told = std::ranges::any_of(out, [&](const Missing& other) { return other.name == last; });
     if (!place.empty() && !told) out.push_back({last, place});
   }
+  return out;
+}
+
+std::vector<std::string> SourceFiles::all() const {
+  std::vector<std::string> out;
+  for (const fs::path& file : read_) out.push_back(file.string());
+  out.insert(out.end(), not_there_.begin(), not_there_.end());
   return out;
 }
 

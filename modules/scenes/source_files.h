@@ -19,6 +19,9 @@ class SourceFiles {
   /// `C:\\models\\wood.png` is found beside the model.
   std::filesystem::path find(const std::string& name) const;
 
+  /// The file of that name in the model's folder, where it would be.
+  std::string beside(const std::string& name) const;
+
   /// Where a text of the model first mentions `name`: "arm.mtl:5", or "arm.fbx" where the file is no text. Empty if
   /// none does.
   std::string place_of(std::string_view name) const;
@@ -32,6 +35,9 @@ class SourceFiles {
     std::string name, place;
   };
   std::vector<Missing> missing() const;
+
+  /// The files that were read, the model first, and those that were asked for and are not there.
+  std::vector<std::string> all() const;
 
  private:
   bool allowed(const std::filesystem::path& file) const;

@@ -20,6 +20,8 @@
 #include "core/system/plain_text.h"
 #include "core/system/stop_request.h"
 #include "scene/images/image_decode.h"
+#include "scene/images/read_at_once.h"
+#include "scene/import/ply_check.h"
 #include "scene/import/wire.h"
 
 namespace carousel::scene {
@@ -28,8 +30,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Seconds of the processor that the module gets, besides one for each MiB of the file.
-constexpr std::uint64_t kSeconds = 10;
+/// Seconds of the processor that the module gets for a file: one for a small one, ten for one of a MiB, and one for
+/// each further MiB. A library that loops over a damaged file of some kilobytes is not waited for longer.
+std::uint32_t seconds_for(std::uint64_t bytes) {
+  constexpr std::uint64_t kLeast = 1, kOfMiB = 10, kMost = 100'000;
+  const std::uint64_t small = std::min(kOfMiB, kLeast + (bytes * (kOfMiB - kLeast) >> 20));
+  return static_cast<std::uint32_t>(std::min(small + (bytes >> 20), kMost));
+}
 
 /// Which images are colours, by their use.
 std::vector<bool> read_as_colors(const Scene& scene) {
@@ -81,6 +88,29 @@ Image read_picture(const fs::path& model, Imported::Image& from, bool color, Mem
   return out;
 }
 
+/// Calls `body`, and gives its errors the name of the file.
+template <class Body>
+auto with_errors_of(const fs::path& file, const Body& body) {
+  const auto fail = [&](const std::string& why) { return SceneError(file.string(), "", why); };
+  try {
+    return body();
+  } catch (const std::bad_alloc&) {
+    throw fail("not enough memory to load it");
+  } catch (const std::length_error& too_much) {
+    throw fail(std::string("the file ") + too_much.what());
+  } catch (const Interrupted&) {
+    throw;
+  } catch (const ConfigError&) {
+    throw;
+  } catch (const FileError&) {
+    throw;
+  } catch (const SceneError&) {
+    throw;
+  } catch (const std::runtime_error& e) {
+    throw fail(e.what());
+  }
+}
+
 }  // namespace
 
 bool is_gltf(const fs::path& file) {
@@ -95,11 +125,15 @@ bool is_gltf(const fs::path& file) {
   return text.starts_with("glTF") || (first != text.npos && text[first] == '{');
 }
 
-Imported SceneImporter::ask(const fs::path& file, std::uint64_t size, MemoryBudget& memory) {
+Imported SceneImporter::ask(const fs::path& file, MemoryBudget& memory, bool posed, bool files_only) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) throw SceneError(file.string(), "", "no such file");
+  const std::uintmax_t size = fs::file_size(file, error);
+  if (error) throw SceneError(file.string(), "", "cannot be read");
+  check_ply(file, size);
   const std::function<void(std::uint64_t)> take = [&](std::uint64_t bytes) { memory.take(bytes); };
-  ImportQuestion question{memory.left(),
-                          static_cast<std::uint32_t>(kSeconds + std::min<std::uint64_t>(size >> 20, 100'000)),
-                          fs::absolute(file).lexically_normal().string()};
+  ImportQuestion question{memory.left(), seconds_for(size), fs::absolute(file).lexically_normal().string(), posed,
+                          files_only};
   std::string text;
   WireWriter{text}(question);
   const std::array<std::string_view, 1> parts{text};
@@ -111,41 +145,35 @@ Imported SceneImporter::ask(const fs::path& file, std::uint64_t size, MemoryBudg
   return out;
 }
 
-Scene SceneImporter::load(const fs::path& file, const WarningSink& warn, const ImageChoice& images) {
-  const std::string name = file.string();
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) throw SceneError(name, "", "no such file");
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error) throw SceneError(name, "", "cannot be read");
-  try {
+Scene SceneImporter::load(const fs::path& file, const WarningSink& warn, const ImageChoice& images,
+                          const std::optional<PoseChoice>& pose, Executor* executor) {
+  return with_errors_of(file, [&] {
     MemoryBudget memory(MemoryBudget::of_process());
-    Imported imported = ask(file, size, memory);
+    Imported imported = ask(file, memory, pose.has_value(), false);
     std::vector<Imported::Image> pictures = std::move(imported.images);
     imported.images.resize(pictures.size());
     for (std::size_t i = 0; i < pictures.size(); ++i) imported.images[i].name = plain_text(pictures[i].name);
-    Scene scene = scene_of(std::move(imported), file, warn);
+    Scene scene = scene_of(std::move(imported), file, warn, memory, pose);
     const std::vector<bool> wanted = images ? images(scene) : std::vector<bool>(scene.images.size(), true);
     const std::vector<bool> color = read_as_colors(scene);
-    for (std::size_t i = 0; i < pictures.size(); ++i) {
-      if (!wanted.at(i)) continue;
-      std::string own = std::move(scene.images[i].name);
-      scene.images[i] = read_picture(file, pictures[i], color[i], memory);
-      scene.images[i].name = std::move(own);
-    }
+    std::vector<std::size_t> left;
+    for (std::size_t i = 0; i < pictures.size(); ++i)
+      if (wanted.at(i)) left.push_back(i);
+    read_at_once(executor, std::move(left), [&](std::size_t i) {
+      Image image = read_picture(file, pictures[i], color[i], memory);
+      image.name = std::move(scene.images[i].name);
+      scene.images[i] = std::move(image);
+    });
     return scene;
-  } catch (const std::bad_alloc&) {
-    throw SceneError(name, "", "not enough memory to load it");
-  } catch (const std::length_error& too_much) {
-    throw SceneError(name, "", std::string("the file ") + too_much.what());
-  } catch (const Interrupted&) {
-    throw;
-  } catch (const FileError&) {
-    throw;
-  } catch (const SceneError&) {
-    throw;
-  } catch (const std::runtime_error& e) {
-    throw SceneError(name, "", e.what());
-  }
+  });
+}
+
+std::vector<fs::path> SceneImporter::files_of(const fs::path& file) {
+  return with_errors_of(file, [&] {
+    MemoryBudget memory(MemoryBudget::of_process());
+    const Imported imported = ask(file, memory, false, true);
+    return std::vector<fs::path>(imported.files.begin(), imported.files.end());
+  });
 }
 
 }  // namespace carousel::scene

@@ -14,7 +14,7 @@ namespace carousel::scene {
 
 /// The contents of a scene file as the module "scenes" reads them. Nothing in it is checked.
 struct Imported {
-  static constexpr std::uint32_t kVersion = 1;
+  static constexpr std::uint32_t kVersion = 2;
 
   struct Image {
     std::string name;
@@ -46,6 +46,24 @@ struct Imported {
     float inner = 0, outer = 0;                             ///< half the angles of the cone, radians
   };
 
+  /// What an animation does to a node; a list of times that is empty moves nothing.
+  struct Channel {
+    std::int64_t node = 0;
+    std::vector<float> translation_times, rotation_times, scale_times;  ///< seconds, none before the one before it
+    std::vector<float> translations, rotations, scales;                 ///< 3, 4 (x, y, z, w) and 3 numbers a time
+  };
+  /// A bone of a mesh, and the vertices that follow it.
+  struct Bone {
+    std::int64_t node = 0;
+    std::array<double, 16> bone_from_mesh{};  ///< column-major, as the mesh was bound
+    std::vector<std::uint32_t> vertices;
+    std::vector<float> weights;
+  };
+  struct Skin {
+    std::uint32_t mesh = 0;
+    std::vector<Bone> bones;
+  };
+
   std::uint32_t version = kVersion;
   std::vector<std::string> warnings;  ///< without the name of the file
   std::vector<Image> images;
@@ -56,6 +74,9 @@ struct Imported {
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Motion motion;
+  std::vector<std::vector<Channel>> animations;  ///< of a question that is posed: one a clip of `motion`
+  std::vector<Skin> skins;                       ///< of a question that is posed
+  std::vector<std::string> files;                ///< all that were read, and those that the model names
 };
 
 // In the order of the bytes (scene/import/wire.h). What a module does not fill in is left out.
@@ -108,9 +129,21 @@ void describe(W& wire, Motion::Clip& v) {
   wire(v.name, v.seconds, v.channels);
 }
 template <class W>
+void describe(W& wire, Imported::Channel& v) {
+  wire(v.node, v.translation_times, v.rotation_times, v.scale_times, v.translations, v.rotations, v.scales);
+}
+template <class W>
+void describe(W& wire, Imported::Bone& v) {
+  wire(v.node, v.bone_from_mesh, v.vertices, v.weights);
+}
+template <class W>
+void describe(W& wire, Imported::Skin& v) {
+  wire(v.mesh, v.bones);
+}
+template <class W>
 void describe(W& wire, Imported& v) {
   wire(v.version, v.warnings, v.images, v.textures, v.materials, v.meshes, v.nodes, v.cameras, v.lights, v.motion.clips,
-       v.motion.skins, v.motion.morph_targets);
+       v.motion.skins, v.motion.morph_targets, v.animations, v.skins, v.files);
 }
 
 /// What the module is asked: read this file, with so many more bytes of memory and seconds of the processor.
@@ -118,10 +151,12 @@ struct ImportQuestion {
   std::uint64_t bytes = 0;
   std::uint32_t seconds = 0;
   std::string file;
+  bool posed = false;       ///< with the keys of animations and the bones of meshes
+  bool files_only = false;  ///< with Imported::files alone
 };
 template <class W>
 void describe(W& wire, ImportQuestion& v) {
-  wire(v.bytes, v.seconds, v.file);
+  wire(v.bytes, v.seconds, v.file, v.posed, v.files_only);
 }
 
 }  // namespace carousel::scene

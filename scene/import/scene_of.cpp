@@ -10,6 +10,7 @@
 #include "scene/gltf/hierarchy.h"
 #include "scene/gltf/pose/transform.h"
 #include "scene/import/import_file.h"
+#include "scene/import/imported_pose.h"
 #include "scene/model/fitted_camera.h"
 #include "scene/model/node_names.h"
 
@@ -31,7 +32,8 @@ DVec3 vector_of(const std::array<double, 3>& v) {
 /// Makes a scene of what the module says, and trusts none of it.
 class SceneMaker {
  public:
-  SceneMaker(Imported& from, std::string file) : from_(from), file_(std::move(file)) {}
+  SceneMaker(Imported& from, std::string file, MemoryBudget& memory)
+      : from_(from), file_(std::move(file)), memory_(memory) {}
 
   Scene make() {
     scene_.name = plain_text(std::filesystem::path(file_).stem().string());
@@ -45,7 +47,9 @@ class SceneMaker {
     scene_.added.material = true;
     scene_.meshes = std::move(from_.meshes);
     for (std::size_t m = 0; m < scene_.meshes.size(); ++m) check(scene_.meshes[m], m);
+    find_skins();
     place();
+    bend();
     for (const Imported::Camera& camera : from_.cameras) add(camera);
     for (const Imported::Light& light : from_.lights) add(light);
     scene_.motion = std::move(from_.motion);
@@ -114,6 +118,25 @@ class SceneMaker {
     }
   }
 
+  void find_skins() {
+    skinned_.assign(scene_.meshes.size(), false);
+    for (const Imported::Skin& skin : from_.skins) {
+      expect(skin.mesh < scene_.meshes.size(), "a skin has no mesh");
+      expect(!skinned_[skin.mesh], "a mesh has two skins");
+      skinned_[skin.mesh] = true;
+    }
+  }
+
+  /// Puts meshes with bones into the world.
+  void bend() {
+    for (const Imported::Skin& skin : from_.skins) {
+      const auto shows = [&](const Imported::Node& node) { return node.mesh == static_cast<std::int64_t>(skin.mesh); };
+      const auto own = std::ranges::find_if(from_.nodes, shows);
+      if (own == from_.nodes.end()) continue;
+      bend_mesh(skin, worlds_, static_cast<std::size_t>(own - from_.nodes.begin()), memory_, scene_.meshes[skin.mesh]);
+    }
+  }
+
   /// Composes the nodes' transforms, adds instances, and finds groups.
   void place() {
     Hierarchy hierarchy;
@@ -133,6 +156,12 @@ class SceneMaker {
       hierarchy.add(parent, local, worlds_.back(), scene_.instances.size());
       names.add(plain_text(node.name), depths.back(), scene_.instances.size());
       if (node.mesh < 0) continue;
+      if (skinned_[static_cast<std::size_t>(node.mesh)]) {  // stands in the world, outside all groups
+        hierarchy.add(Hierarchy::kWorld, DMat4(1), DMat4(1), scene_.instances.size());
+        hierarchy.add_own(DMat4(1));
+        scene_.instances.push_back({MeshId(static_cast<std::uint32_t>(node.mesh)), Affine{}});
+        continue;
+      }
       hierarchy.add_own(DMat4(1));
       scene_.instances.push_back({MeshId(static_cast<std::uint32_t>(node.mesh)), rounded(i)});
     }
@@ -212,19 +241,27 @@ class SceneMaker {
 
   Imported& from_;
   std::string file_;
+  MemoryBudget& memory_;
   Scene scene_;
-  std::vector<DMat4> worlds_;
+  std::vector<DMat4> worlds_;  ///< by node
+  std::vector<bool> skinned_;  ///< by mesh
 };
 
 }  // namespace
 
-Scene scene_of(Imported imported, const std::filesystem::path& file, const WarningSink& warn) {
+Scene scene_of(Imported imported, const std::filesystem::path& file, const WarningSink& warn, MemoryBudget& memory,
+               const std::optional<PoseChoice>& pose) {
   const std::string name = file.string();
-  if (warn)
-    for (const std::string& warning : imported.warnings) warn(name + ": " + plain_text(warning));
-  Scene scene = SceneMaker(imported, name).make();
-  if (warn && scene.motion.any())
-    warn(name + ": ignored, the base pose is shown: animations, skins and morph targets are read from glTF alone");
+  const auto say = [&](const std::string& warning) {
+    if (warn) warn(name + ": " + warning);
+  };
+  for (const std::string& warning : imported.warnings) say(plain_text(warning));
+  if (pose) pose_nodes(imported, *pose, name, warn);
+  Scene scene = SceneMaker(imported, name, memory).make();
+  if (scene.motion.any() && !pose)
+    say("ignored, the base pose is shown: animations, skins and morph targets (scene.time shows a moment)");
+  if (pose && scene.motion.morph_targets > 0)
+    say("morph targets are read from glTF alone, and are ignored; meshes keep their base shape");
   return scene;
 }
 

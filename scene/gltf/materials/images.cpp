@@ -5,10 +5,12 @@
 #include <span>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/system/stop_request.h"
 #include "scene/images/image_decode.h"
+#include "scene/images/read_at_once.h"
 
 namespace carousel::scene {
 
@@ -56,26 +58,6 @@ Image read_image(const GltfDocument& document, const GltfResources& resources, c
   return decode(document, budget, index, buffer.subspan(view.byteOffset, view.byteLength), color);
 }
 
-/// Reads images on several threads, and returns those that failed: by themselves they may fit a memory that was too
-/// small for all of them, and the first one in the file that does not is the error, whatever thread came first.
-template <class Read>
-std::vector<std::size_t> read_at_once(Executor& executor, const std::vector<std::size_t>& images, const Read& read) {
-  std::vector<char> failed(images.size(), 0);
-  executor.parallel_for(images.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      try {
-        read(images[i]);
-      } catch (const std::exception&) {
-        failed[i] = 1;
-      }
-    }
-  });
-  std::vector<std::size_t> out;
-  for (std::size_t i = 0; i < images.size(); ++i)
-    if (failed[i] != 0) out.push_back(images[i]);
-  return out;
-}
-
 }  // namespace
 
 void read_images(const GltfDocument& document, const GltfResources& resources, const GltfModel& model,
@@ -97,8 +79,7 @@ void read_images(const GltfDocument& document, const GltfResources& resources, c
     image.name = std::move(scene.images[i].name);
     scene.images[i] = std::move(image);
   };
-  if (executor != nullptr && left.size() > 1) left = read_at_once(*executor, left, read);
-  for (const std::size_t i : left) read(i);
+  read_at_once(executor, std::move(left), read);
 }
 
 }  // namespace carousel::scene

@@ -203,10 +203,16 @@ class Player {
 
 std::vector<bool> chosen_animations(const Json& json, const PoseChoice& pose, const std::string& file) {
   const std::size_t count = animation_count(json);
-  std::vector<bool> out(count, !pose.animation.has_value());
-  if (!pose.animation) return out;
   std::vector<std::string> names;
   for (std::size_t i = 0; i < count; ++i) names.push_back(name_of_animation(json, i));
+  return chosen_animations(names, pose, file);
+}
+
+std::vector<bool> chosen_animations(const std::vector<std::string>& names, const PoseChoice& pose,
+                                    const std::string& file) {
+  const std::size_t count = names.size();
+  std::vector<bool> out(count, !pose.animation.has_value());
+  if (!pose.animation) return out;
   if (const auto named = std::ranges::find(names, *pose.animation); named != names.end()) {
     out[static_cast<std::size_t>(named - names.begin())] = true;
     return out;

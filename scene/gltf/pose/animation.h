@@ -16,6 +16,9 @@ namespace carousel::scene {
 /// Tells which animations of a file are played, by the names in its JSON as it was parsed. Without a name in `pose` it
 /// is all of them. Throws a ConfigError for scene.animation.name if the file has none that is called so.
 std::vector<bool> chosen_animations(const Json& json, const PoseChoice& pose, const std::string& file);
+/// The same for animations of these names.
+std::vector<bool> chosen_animations(const std::vector<std::string>& names, const PoseChoice& pose,
+                                    const std::string& file);
 
 /// Gives the nodes of `model` the transforms and weights that the played animations have at the time of `pose`. Of
 /// several, one that moves a node which an earlier one moves is left out with a warning. Channels of extensions are

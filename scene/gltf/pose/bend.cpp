@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <utility>
 
-#include <glm/geometric.hpp>
+#include "scene/gltf/pose/transform.h"
 
 namespace carousel::scene {
 
@@ -50,13 +50,7 @@ class Bending {
       }
       const DMat4 m = whole != 0 ? sum / whole : joint(bend, sets[0].joints[4 * v], v, 0);
       positions[v] = DVec3(m * glm::dvec4(positions[v], 1));
-      if (normals.empty()) continue;
-      // The inverse transpose, but for its length; it exists for flat matrices as well.
-      const DVec3 a(m[0]), b(m[1]), c(m[2]);
-      const DMat3 cofactors(glm::cross(b, c), glm::cross(c, a), glm::cross(a, b));
-      const DVec3 normal = cofactors * normals[v];
-      const double length = glm::length(normal);
-      if (length > 0) normals[v] = normal / (glm::dot(a, cofactors[0]) < 0 ? -length : length);
+      if (!normals.empty()) normals[v] = moved_normal(m, normals[v]);
     }
   }
 

@@ -53,6 +53,16 @@ Affine rounded(const GltfDocument& document, const DMat4& world, const std::stri
   return out;
 }
 
+DVec3 moved_normal(const DMat4& m, const DVec3& normal) {
+  // The inverse transpose, but for its length; it exists for flat matrices as well.
+  const DVec3 a(m[0]), b(m[1]), c(m[2]);
+  const DMat3 cofactors(glm::cross(b, c), glm::cross(c, a), glm::cross(a, b));
+  const DVec3 moved = cofactors * normal;
+  const double length = glm::length(moved);
+  if (!(length > 0)) return normal;
+  return moved / (glm::dot(a, cofactors[0]) < 0 ? -length : length);
+}
+
 std::optional<Frame> orthonormal_frame(const DMat4& world) {
   const auto direction = [](DVec3 v) -> std::optional<DVec3> {
     const double length = glm::length(v);

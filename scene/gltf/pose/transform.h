@@ -21,6 +21,9 @@ DMat4 node_transform(const GltfDocument& document, const tinygltf::Node& node, c
 /// Rounds to single precision, once. Throws SceneError at `path` when an entry is not finite there.
 Affine rounded(const GltfDocument& document, const DMat4& world, const std::string& path);
 
+/// The direction of a normal where `m` moves its surface, of length 1; the normal itself where `m` leaves it none.
+DVec3 moved_normal(const DMat4& m, const DVec3& normal);
+
 /// Right, up and back of an object that looks along its own -z (cameras, lights), without scale and mirroring. Empty if
 /// the map flattens the view direction.
 struct Frame {

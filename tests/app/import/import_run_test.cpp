@@ -8,6 +8,7 @@
 #include "core/module/module.h"
 #include "tests/app/support/program.h"
 #include "tests/scene/gltf/gltf_builder.h"
+#include "tests/scene/import/moving_files.h"
 
 namespace carousel::import_run_test {
 namespace {
@@ -71,22 +72,35 @@ TEST_F(ImportRun, FaultsEndWithStatus2AndTheFile) {
   const Outcome bad = program_.run({"run", "roof.yaml", "--set", "scene.file=bad.ply"});
   EXPECT_EQ(bad.status, 2);
   EXPECT_THAT(bad.err, HasSubstr("bad.ply: "));
-  const Outcome moment = program_.run({"run", "roof.yaml", "--set", "scene={file: roof.obj, time: 1}"});
-  EXPECT_EQ(moment.status, 2);
-  EXPECT_THAT(moment.err, HasSubstr("scene.time: roof.obj is no glTF file; files of other formats are shown in their "
-                                    "base pose"));
+  const Outcome moment = program_.run({"run", "roof.yaml", "--set", "scene={file: roof.obj, time: 1}", "--out", "o"});
+  EXPECT_EQ(moment.status, 0) << moment.err;
+  EXPECT_THAT(moment.err, HasSubstr("roof.obj: has no animations, skins or morph targets; scene.time changes nothing"));
 }
 
-TEST_F(ImportRun, WithoutTheModuleTheErrorNamesThePackage) {
-  std::filesystem::create_directory(program_.folder() / "none");
-  setenv("CAROUSEL_MODULES", (program_.folder() / "none").c_str(), 1);
-  const Outcome outcome = program_.run({"run", "roof.yaml", "--set", "scene.file=roof.obj"});
-  const Outcome gltf = program_.run({"run", "roof.yaml", "--out", "out"});
-  unsetenv("CAROUSEL_MODULES");
-  EXPECT_EQ(outcome.status, 2);
-  EXPECT_THAT(outcome.err, HasSubstr("the module scenes is not there"));
-  EXPECT_THAT(outcome.err, HasSubstr("libassimp-dev"));
-  EXPECT_EQ(gltf.status, 0) << "glTF needs no module";
+// The triangle of moving_collada() at 1 s: (2, 0), (2, 1) and (1, 0).
+TEST_F(ImportRun, AMomentOfAColladaFileIsHitWhereItIs) {
+  program_.write("vane.dae", scene::moving_collada());
+  program_.write("rays.csv",
+                 "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n"
+                 "0,camera,0.25,0.25,5,0,0,-1,0,inf\n"
+                 "1,camera,1.75,0.25,5,0,0,-1,0,inf\n");
+  const auto hits = [&](const std::string& scene) {
+    const Outcome outcome = program_.run({"run", "roof.yaml", "--hits", "--force", "--out", "vane", "--set", scene,
+                                          "--set", "workload={rays_from: rays.csv}"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    const std::string csv = program_.read("vane/hits.csv");
+    std::string out;
+    for (std::size_t line = csv.find('\n'); line + 1 < csv.size(); line = csv.find('\n', line + 1)) {
+      std::size_t at = line + 1;
+      for (int comma = 0; comma < 10; ++comma) at = csv.find(',', at) + 1;
+      out += csv[at];
+    }
+    return out;
+  };
+  EXPECT_EQ(hits("scene={file: vane.dae}"), "10");
+  EXPECT_EQ(hits("scene={file: vane.dae, time: 1}"), "01");
+  const Outcome listing = program_.run({"inspect", "vane.dae"});
+  EXPECT_THAT(listing.out, HasSubstr("2 s, "));
 }
 
 }  // namespace

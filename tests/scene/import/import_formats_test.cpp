@@ -2,16 +2,13 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
-#include <fstream>
 
 #include <gmock/gmock.h>
-#include <unistd.h>
 
-#include "core/module/module.h"
 #include "core/system/error.h"
 #include "scene/import/import_file.h"
 #include "tests/scene/gltf/encode_image.h"
+#include "tests/scene/import/import_files.h"
 
 namespace carousel::scene::import_formats_test {
 namespace {
@@ -20,41 +17,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-/// A folder for files, and the module.
-class ImportFormats : public testing::Test {
- protected:
-  ImportFormats()
-      : folder_(std::filesystem::temp_directory_path() / ("carousel-import-" + std::to_string(::getpid())) / "a" /
-                "b") {
-    std::filesystem::create_directories(folder_);
-  }
-  ~ImportFormats() override { std::filesystem::remove_all(folder_.parent_path().parent_path()); }
-  void SetUp() override {
-    if (!std::filesystem::exists(module_folder() / "scenes.so")) GTEST_SKIP() << "built without libassimp-dev";
-  }
-
-  void write(const std::string& name, const std::string& bytes) const {
-    std::ofstream(folder_ / name, std::ios::binary) << bytes;
-  }
-  Scene load(const std::string& name) {
-    warnings_.clear();
-    return importer_.load(folder_ / name, [&](const std::string& w) {
-      warnings_.push_back(w.starts_with(folder_.string() + "/") ? w.substr(folder_.string().size() + 1) : w);
-    });
-  }
-  std::string error_of(const std::string& name) {
-    try {
-      load(name);
-      return "loaded";
-    } catch (const SceneError& e) {
-      return e.message();
-    }
-  }
-
-  std::filesystem::path folder_;
-  std::vector<std::string> warnings_;
-  SceneImporter importer_;
-};
+using ImportFormats = ImportFiles;
 
 /// Two triangles that make a square from the origin on.
 void expect_square(const Scene& scene, float side) {
@@ -256,9 +219,33 @@ TEST_F(ImportFormats, WhatIsNoSceneIsRefused) {
   EXPECT_THAT(error_of("a.obj"), testing::AnyOf(HasSubstr("shows no triangles"), HasSubstr("cannot be read: Assimp:")));
   write("a.xyz", "nothing that anyone reads");
   EXPECT_THAT(error_of("a.xyz"), HasSubstr("cannot be read: Assimp:"));
-  write("a.ply", "ply\nformat ascii 1.0\nelement vertex 4000000000\nproperty float x\nend_header\n");
-  EXPECT_NE(error_of("a.ply"), "loaded");
   EXPECT_EQ(error_of("none.obj"), "no such file");
+}
+
+TEST_F(ImportFormats, APlyThatAnnouncesMoreThanItHoldsIsRefusedAtOnce) {
+  const std::string whole =
+      "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+      "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+  const auto with = [&](const std::string& old, const std::string& other) {
+    std::string text = whole;
+    write("a.ply", text.replace(text.find(old), old.size(), other));
+    return error_of("a.ply");
+  };
+  EXPECT_EQ(with("x", "x"), "loaded");
+  EXPECT_EQ(with("vertex 3", "vertex 000003"), "loaded");
+  EXPECT_EQ(with("end_header", "end"), "the header does not end: there is no end_header");
+  EXPECT_EQ(with("vertex 3", "vertex 4000000000"),
+            "line 3: the header announces 4000000000 elements \"vertex\", and the file has 189 bytes");
+  EXPECT_THAT(with("face 1", "face 99999999999999999999999"), HasSubstr("line 7: the header announces 9999"));
+}
+
+TEST_F(ImportFormats, TheFilesOfAModelAreTold) {
+  write("wood.png", "x");
+  write("a.obj", kObj);
+  write("a.mtl", "newmtl red\nmap_Kd wood.png\nmap_Ke none.png\n");
+  std::vector<std::string> names;
+  for (const std::filesystem::path& file : importer_.files_of(folder_ / "a.obj")) names.push_back(file.filename());
+  EXPECT_THAT(names, ElementsAre("a.obj", "a.mtl", "wood.png", "none.png"));
 }
 
 TEST_F(ImportFormats, GltfIsToldFromOthers) {

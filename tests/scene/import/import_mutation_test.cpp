@@ -9,13 +9,15 @@
 #include "scene/builtin/hash_random.h"
 #include "scene/import/import_file.h"
 #include "tests/scene/gltf/guarded_load.h"
+#include "tests/scene/import/moving_files.h"
 #include "tests/support/random_runs.h"
 
 namespace carousel::scene::import_mutation_test {
 namespace {
 
 struct Sample {
-  const char *name, *text;
+  const char* name;
+  std::string text;
 };
 
 const Sample kSamples[] = {
@@ -31,7 +33,9 @@ const Sample kSamples[] = {
     {"a.stl",
      "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 3 0 0\nvertex 3 3 0\nendloop\nendfacet\nendsolid "
      "a\n"},
-    {"a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"}};
+    {"a.off", "OFF\n4 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2\n3 0 2 3\n"},
+    {"a.dae", arm_collada()},
+    {"a.fbx", kMovingFbx}};
 
 /// Changes, removes, doubles or inserts some characters, or makes a number large or negative.
 std::string mutant(std::string text, std::uint64_t seed) {
@@ -76,7 +80,7 @@ TEST(ImportMutation, DamagedTextsLoadOrAreRefused) {
         count,
         [&](std::size_t i) {
           std::ofstream(folder / sample.name, std::ios::binary) << mutant(sample.text, run_seed() + i);
-          return importer.load(folder / sample.name);
+          return importer.load(folder / sample.name, {}, {}, PoseChoice{0.5f, std::nullopt});
         },
         30);
     std::size_t loaded = 0, broken = 0;

@@ -37,6 +37,9 @@ Imported triangle() {
   out.cameras.push_back({1, "eye", {0, 0, 3}, {0, 0, -1}, {0, 1, 0}, 0.5f, 0, 0, 0});
   out.lights.push_back({0, PunctualLight::Kind::kSpot, {1, 2, 3}, {}, {0, -1, 0}, 0.1f, 0.2f});
   out.motion.clips.push_back({"walk", 2, 3});
+  out.animations.push_back({{0, {0, 1}, {0, 1}, {0}, {5, 0, 0, 5, 0, 0}, {0, 0, 0, 1, 0, 0, 0, 1}, {1, 1, 1}}});
+  out.skins.push_back({0, {{0, {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 5, 0, 0, 1}, {0, 1}, {1, 0.5f}}}});
+  out.files = {"a.obj"};
   return out;
 }
 
@@ -55,7 +58,8 @@ Imported read(std::string_view bytes) {
 }
 
 Scene scene_of(Imported imported) {
-  return scene::scene_of(std::move(imported), "a.obj", {});
+  MemoryBudget memory(1 << 20);
+  return scene::scene_of(std::move(imported), "a.obj", {}, memory, PoseChoice{0.5f, std::nullopt});
 }
 
 TEST(ImportWire, AllValuesComeBack) {
@@ -63,7 +67,8 @@ TEST(ImportWire, AllValuesComeBack) {
   EXPECT_EQ(bytes_of(back), bytes_of(triangle()));
   const Scene scene = scene_of(back);
   EXPECT_EQ(scene.name, "a");
-  EXPECT_EQ(scene.instances.at(0).world_from_model.translation, Vec3(10, 0, 0));
+  EXPECT_EQ(scene.instances.at(0).world_from_model.translation, Vec3(0)) << "a mesh with bones stands in the world";
+  EXPECT_EQ(scene.meshes.at(0).positions, (std::vector<Vec3>{{10, 0, 0}, {11, 0, 0}, {10, 1, 0}}));
   EXPECT_EQ(scene.materials.at(0).base_color, Vec4(1, 0, 0, 1));
   EXPECT_EQ(scene.materials[0].alpha_mode, AlphaMode::kBlend);
   EXPECT_EQ(scene.cameras.at(0).position, Vec3(10, 0, 3));
@@ -116,8 +121,8 @@ TEST(ImportWire, WhatDoesNotFitTogetherIsRefused) {
     try {
       scene_of(bad);
       ADD_FAILURE() << message;
-    } catch (const SceneError& e) {
-      EXPECT_NE(e.message().find(message), std::string::npos) << e.what();
+    } catch (const std::runtime_error& e) {
+      EXPECT_NE(std::string(e.what()).find(message), std::string::npos) << e.what();
     }
   };
   refused([](Imported& i) { i.meshes[0].indices[1] = 3; }, "an index is beyond its vertices");
@@ -125,12 +130,23 @@ TEST(ImportWire, WhatDoesNotFitTogetherIsRefused) {
   refused([](Imported& i) { i.meshes[0].positions[1].y = INFINITY; }, "vertex 1: the position is not finite");
   refused([](Imported& i) { i.nodes[1].parent = 1; }, "the nodes form no tree");
   refused([](Imported& i) { i.nodes[1].mesh = 1; }, "the nodes form no tree");
-  refused([](Imported& i) { i.nodes[1].local[12] = 1e300; },
+  refused([](Imported& i) { i.skins.clear(), i.nodes[1].local[12] = 1e300; },
           "node 1 \"leaf\": the transform to world space is too large");
   refused([](Imported& i) { i.materials[0].base_color_texture->texture = TextureId(1); }, "names no texture");
   refused([](Imported& i) { i.textures[0].image = ImageId(7); }, "a texture names no image");
   refused([](Imported& i) { i.cameras[0].node = 2; }, "a camera or a light has no node");
   refused([](Imported& i) { i.nodes[1].mesh = -1; }, "the scene shows no triangles");
+  refused([](Imported& i) { i.nodes[1].local[12] = 1e300; }, "the pose moves vertex 2 of mesh");
+  refused([](Imported& i) { i.skins[0].mesh = 1; }, "a skin has no mesh");
+  refused([](Imported& i) { i.skins.push_back(i.skins[0]); }, "a mesh has two skins");
+  refused([](Imported& i) { i.skins[0].bones[0].node = 2; }, "a bone has no node");
+  refused([](Imported& i) { i.skins[0].bones[0].vertices[0] = 3; }, "a bone moves no vertex");
+  refused([](Imported& i) { i.skins[0].bones[0].weights.clear(); }, "a bone has not one weight a vertex");
+  refused([](Imported& i) { i.animations[0][0].node = 2; }, "an animation moves no node");
+  refused([](Imported& i) { i.animations.clear(); }, "an animation has no name");
+  refused([](Imported& i) { i.animations[0][0].translations.pop_back(); }, "not one value a time");
+  refused([](Imported& i) { i.animations[0][0].rotation_times = {1, 0}; }, "keys of an animation are not in order");
+  refused([](Imported& i) { i.animations[0][0].rotations = {0, 0, 0, 0, 0, 0, 0, 1}; }, "a rotation is zero");
 }
 
 }  // namespace
