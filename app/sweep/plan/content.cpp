@@ -3,14 +3,17 @@
 #include <cerrno>
 #include <cstring>
 #include <iterator>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "app/host/program_info.h"
 #include "app/run/prepare.h"
+#include "core/module/module.h"
 #include "core/numeric/bytes_digest.h"
 #include "core/system/error.h"
 #include "core/system/input_file.h"
+#include "scene/import/import_file.h"
 
 namespace carousel::app {
 
@@ -50,6 +53,35 @@ nlohmann::json gltf_json(const std::string& bytes) {
   return nlohmann::json::parse(text, nullptr, false);  // the import reports what is wrong with it
 }
 
+/// The files beside a glTF file that it names.
+std::vector<std::filesystem::path> named_in_gltf(const std::filesystem::path& path, const std::string& bytes) {
+  std::vector<std::filesystem::path> out;
+  const nlohmann::json json = gltf_json(bytes);
+  for (const char* list : {"buffers", "images"}) {
+    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) continue;
+    for (const nlohmann::json& entry : json[list]) {
+      if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
+      const std::string uri = entry["uri"];
+      if (uri.rfind("data:", 0) != 0) out.push_back(path.parent_path() / percent_decoded(uri));
+    }
+  }
+  return out;
+}
+
+/// The files that a scene of another format names: the module that reads it knows them. The import reports what is
+/// wrong with the file or the module.
+std::vector<std::filesystem::path> named_in_other(const std::filesystem::path& path) {
+  try {
+    std::vector<std::filesystem::path> out = scene::SceneImporter().files_of(path);
+    if (!out.empty()) out.erase(out.begin());  // itself
+    return out;
+  } catch (const SceneError&) {
+    return {};
+  } catch (const ModuleError&) {
+    return {};
+  }
+}
+
 }  // namespace
 
 const std::string& ContentDigests::of_file(const std::string& name) {
@@ -73,18 +105,10 @@ const std::string& ContentDigests::of_scene(const std::string& name) {
   require_plain(path);
   const std::string bytes = read_all(path);
   std::string all = bytes_digest(bytes);
-  const nlohmann::json json = gltf_json(bytes);
-  for (const char* list : {"buffers", "images"}) {
-    if (!json.is_object() || !json.contains(list) || !json[list].is_array()) continue;
-    for (const nlohmann::json& entry : json[list]) {
-      if (!entry.is_object() || !entry.contains("uri") || !entry["uri"].is_string()) continue;
-      const std::string uri = entry["uri"];
-      if (uri.rfind("data:", 0) == 0) continue;
-      const std::filesystem::path file = path.parent_path() / percent_decoded(uri);
-      // A file that is missing is the import's to judge: of images it may need none.
-      std::error_code ignored;
-      all += std::filesystem::is_regular_file(file, ignored) ? bytes_digest(read_all(file)) : "missing";
-    }
+  for (const std::filesystem::path& file : scene::is_gltf(path) ? named_in_gltf(path, bytes) : named_in_other(path)) {
+    // A file that is missing is the import's to judge: of images it may need none.
+    std::error_code ignored;
+    all += std::filesystem::is_regular_file(file, ignored) ? bytes_digest(read_all(file)) : "missing";
   }
   return digest = bytes_digest(all);
 }

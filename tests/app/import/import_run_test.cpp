@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "app/sweep/plan/content.h"
 #include "core/module/module.h"
 #include "tests/app/support/program.h"
 #include "tests/scene/gltf/gltf_builder.h"
@@ -101,6 +102,40 @@ TEST_F(ImportRun, AMomentOfAColladaFileIsHitWhereItIs) {
   EXPECT_EQ(hits("scene={file: vane.dae, time: 1}"), "01");
   const Outcome listing = program_.run({"inspect", "vane.dae"});
   EXPECT_THAT(listing.out, HasSubstr("2 s, "));
+}
+
+// A sweep goes by the content of files: those that a model names count as the model does.
+TEST_F(ImportRun, DigestsCountMaterialFilesAndPictures) {
+  const auto digest = [&] {
+    SceneConfig config;
+    config.file = "roof.obj";
+    return app::ContentDigests(program_.folder()).of(config, {});
+  };
+  const std::string first = digest();
+  EXPECT_EQ(digest(), first);
+  program_.write("roof.mtl", "newmtl m\nKd 0.5 0.25 0.75\nmap_Kd wood.png\n");
+  const std::string no_picture = digest();
+  EXPECT_NE(no_picture, first);
+  program_.write("wood.png", "one");
+  const std::string picture = digest();
+  EXPECT_NE(picture, no_picture);
+  program_.write("wood.png", "two");
+  EXPECT_NE(digest(), picture);
+  program_.write("other.png", "beside the model, and not of it");
+  program_.write("wood.png", "one");
+  EXPECT_EQ(digest(), picture);
+}
+
+TEST_F(ImportRun, WithoutTheModuleTheErrorNamesThePackage) {
+  std::filesystem::create_directory(program_.folder() / "none");
+  setenv("CAROUSEL_MODULES", (program_.folder() / "none").c_str(), 1);
+  const Outcome outcome = program_.run({"run", "roof.yaml", "--set", "scene.file=roof.obj"});
+  const Outcome gltf = program_.run({"run", "roof.yaml", "--out", "out"});
+  unsetenv("CAROUSEL_MODULES");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("the module scenes is not there"));
+  EXPECT_THAT(outcome.err, HasSubstr("libassimp-dev"));
+  EXPECT_EQ(gltf.status, 0) << "glTF needs no module";
 }
 
 }  // namespace
