@@ -11,6 +11,7 @@
 #include "app/host/exit_status.h"
 #include "app/host/machine_info.h"
 #include "app/host/output.h"
+#include "app/host/required_modules.h"
 #include "app/run/memory_need.h"
 #include "app/trace/memory_csv.h"
 #include "core/config/load/load.h"
@@ -110,7 +111,9 @@ int print_graph(const CheckArguments& arguments) {
 int check_command(const CheckArguments& arguments) {
   if (arguments.graph) return print_graph(arguments);
   // A topology that can deadlock gets its verdict here instead of a plain refusal.
-  const Prepared p = prepare(arguments, {.force = true, .ranks = true}, false);
+  const Prepared p = prepare(arguments, {.force = true, .ranks = true}, false, [](const Prepared& of) {
+    require_modules(of.config().engine, of.config().workload, of.config().image);
+  });
   const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config());
   std::string text;
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {

@@ -17,6 +17,7 @@
 #include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/rank_scope.h"
+#include "app/host/required_modules.h"
 #include "app/run/hit_recorder.h"
 #include "app/run/render_job.h"
 #include "app/sampled/sampled_run.h"
@@ -169,6 +170,7 @@ int run_command(const RunArguments& arguments) {
   const Prepared p = prepare(
       arguments, {.force = arguments.force, .ranks = true}, keep_hits,
       [&](const Prepared& of) {
+        require_modules(of.config().engine, of.config().workload, of.config().image);
         if (const Config& config = of.config(); config.engine.transport != EngineTransport::kLocal) {
           require_one_rank(arguments);
           ranks.emplace(config, program_identity());

@@ -46,6 +46,10 @@ std::string difference(const std::string& ours, const std::string& theirs) {
 
 }  // namespace
 
+void require_mpi_module() {
+  mpi_module();
+}
+
 RankScope::RankScope(const Config& config, const std::string& program) {
   const ringbus::MpiModule& module = mpi_module();
   if (!started_as_rank())

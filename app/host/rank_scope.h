@@ -10,6 +10,9 @@
 
 namespace carousel::app {
 
+/// Makes sure that the module "mpi" is there and can be opened. Throws a ConfigError that names it and its package.
+void require_mpi_module();
+
 /// This process as a rank of a run with `engine.transport: mpi`, from the reading of its configuration to the writing
 /// of results, which rank 0 does. Messages on the terminal name the rank from here on.
 class RankScope {

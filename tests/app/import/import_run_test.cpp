@@ -104,6 +104,39 @@ TEST_F(ImportRun, AMomentOfAColladaFileIsHitWhereItIs) {
   EXPECT_THAT(listing.out, HasSubstr("2 s, "));
 }
 
+TEST_F(ImportRun, CheckNamesTheModuleThatIsMissingWithKeyAndPackage) {
+  std::filesystem::create_directory(program_.folder() / "none");
+  program_.write("roof_obj.yaml", "scene:\n  file: roof.obj\n");
+  program_.write("tiff.yaml", "scene: {builtin: cornell}\nimage:\n  files: [tiff]\n");
+  program_.write("mpi.yaml", "scene: {builtin: cornell}\nengine:\n  transport: mpi\n");
+  program_.write("wood.tga", std::string("\0\0\2\0\0\0\0\0\0\0\0\0\1\0\1\0\x18\x20\3\2\1", 21));
+  scene::GltfBuilder b = scene::GltfBuilder::square();
+  b.push("images", {{"uri", "wood.tga"}});
+  b.push("textures", {{"source", 0}});
+  b.push("materials", {{"pbrMetallicRoughness", {{"baseColorTexture", {{"index", 0}}}}}});
+  b.json["meshes"][0]["primitives"][0]["material"] = 0;
+  b.json["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = b.floats({0, 0, 1, 0, 1, 1, 0, 1}, "VEC2", 2);
+  program_.write("wood.gltf", b.text());
+  program_.write("wood.yaml", "scene: {file: wood.gltf}\n");
+  const auto check = [&](const char* file) { return program_.run({"check", file}); };
+  EXPECT_EQ(check("wood.yaml").status, 0) << check("wood.yaml").err;
+  setenv("CAROUSEL_MODULES", (program_.folder() / "none").c_str(), 1);
+  const Outcome obj = check("roof_obj.yaml"), tiff = check("tiff.yaml"), mpi = check("mpi.yaml"),
+                wood = check("wood.yaml");
+  unsetenv("CAROUSEL_MODULES");
+  for (const Outcome& outcome : {obj, tiff, mpi, wood}) EXPECT_EQ(outcome.status, 2) << outcome.err;
+  EXPECT_THAT(obj.err,
+              HasSubstr("roof_obj.yaml:2:9: scene.file: roof.obj is no glTF file, and the module scenes is not "
+                        "there: "));
+  EXPECT_THAT(obj.err, HasSubstr("carousel-scenes"));
+  EXPECT_THAT(tiff.err, HasSubstr("tiff.yaml:3:10: image.files: the module pictures is not there: "));
+  EXPECT_THAT(tiff.err, HasSubstr("carousel-pictures"));
+  EXPECT_THAT(mpi.err, HasSubstr("mpi.yaml:3:14: engine.transport: the module mpi is not there: "));
+  EXPECT_THAT(mpi.err, HasSubstr("carousel-mpi"));
+  EXPECT_THAT(wood.err, HasSubstr("wood.gltf: /images/0: the image is TGA, neither PNG nor JPEG nor WebP, and "
+                                  "the module pictures is not there: "));
+}
+
 // A sweep goes by the content of files: those that a model names count as the model does.
 TEST_F(ImportRun, DigestsCountMaterialFilesAndPictures) {
   const auto digest = [&] {
