@@ -20,7 +20,8 @@ TrafficPlan::TrafficPlan(const TrafficConfig& traffic, std::uint64_t seed, std::
   };
   // A source creates a packet a cycle at most, so all may run for so long and at least the last packet is left, which
   // ends the window.
-  for (Cycle at = 0; left > sources.size();) {
+  Cycle at = 0;
+  while (left > sources.size()) {
     at += (left - 1) / sources.size();
     for (std::size_t i = 0; i < sources.size(); ++i)
       while (sources[i].created() <= at) count(i);
