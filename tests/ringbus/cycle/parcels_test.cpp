@@ -126,6 +126,19 @@ void expect_same(const RunResult& a, const RunResult& b) {
   EXPECT_EQ(a.cycle->cached_lines, b.cycle->cached_lines);
 }
 
+/// Links have in their rows what the ledger counts on them.
+void expect_rows_of_links(const CycleResult& result) {
+  std::uint64_t rows = 0, ledger = 0;
+  for (const LinkUse& link : result.links) {
+    rows += link.bytes;
+    EXPECT_LE(link.use.busy + link.use.stalled, result.cycles);
+    EXPECT_GE(link.use.busy * 65536, link.bytes);
+  }
+  for (const ByteRow& row : result.bytes)
+    if (row.what == "packets" || row.what == "messages on links") ledger += row.bytes;
+  EXPECT_EQ(rows, ledger);
+}
+
 TEST(DrawnMemory, IsThatOfSideWiresWhenItsLinksAreAsLongAndNeverBusy) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 600, 1);
   const std::string wide = "bytes_per_cycle: 65536, latency_cycles: ";
@@ -231,8 +244,23 @@ TEST(DrawnMemory, PacketsAndShapesGetInEachOthersWay) {
     both += shared.result.cycle->links[i].bytes;
   }
   EXPECT_GT(both, packets);
+  for (const Outcome* out : {&shared, &apart}) expect_rows_of_links(*out->result.cycle);
   EXPECT_EQ(run_text(scene, text("    - {ring: 'r[*], l2', carries: [packets, shapes]}\n"), {}, 4).result.cycle->cycles,
             shared.result.cycle->cycles);
+}
+
+TEST(DrawnMemory, ALinkThatIsSharedHasTwoCyclesAtLeast) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 200, 1);
+  const std::string text = kSmall +
+                           "topology:\n  shape: graph\n  nodes: [{name: r, count: 2}, {name: l2, kind: cache}]\n"
+                           "  links: [{ring: 'r[*], l2', latency_cycles: 2, carries: [packets, shapes]}]\n";
+  Cell cell;
+  cell.config = load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\n" + text, "machine.yaml"}).config;
+  const Outcome two = run_cell(scene, cell);
+  cell.config.topology.links[0].latency_cycles = 1;  // as the search for the bottleneck does, without the rules
+  const Outcome one = run_cell(scene, cell);
+  EXPECT_EQ(one.fault + two.fault, "");
+  EXPECT_EQ(one.result.cycle->cycles, two.result.cycle->cycles);
 }
 
 TEST(DrawnShading, IsThatOfSideWiresWhenItsLinksAreAsLongAndNeverBusy) {
@@ -253,6 +281,7 @@ TEST(DrawnShading, IsThatOfSideWiresWhenItsLinksAreAsLongAndNeverBusy) {
   const Outcome there = run_text(scene, text(pool, star("new_rays, completed_rays", 7)), hop);
   expect_same(side.result, there.result);
   EXPECT_EQ(there.result.cycle->links.size(), 12u);
+  expect_rows_of_links(*there.result.cycle);
   EXPECT_GT(run_text(scene, text(pool, star("new_rays, completed_rays", 70)), hop).result.cycle->cycles,
             side.result.cycle->cycles);
   for (const char* one : {"new_rays", "completed_rays"}) {
