@@ -103,8 +103,8 @@ GraphFacts graph_facts(const TopologyConfig& config) {
 DeadlockVerdict stop_ring_verdict(const RingStops& stops) {
   const bool slots = stops.rule == RingStops::Rule::kSlots;
   std::string rule =
-      slots ? "slots: nothing waits on the ring, and a flit that finds its port busy goes round again, which it does "
-              "for older ones alone"
+      slots ? "slots: nothing waits on the ring, and a flit that finds its port busy goes round again, until it is the "
+              "oldest at the latest"
             : "grants: a packet starts when its whole way is free, the port at its end included, and nothing waits on "
               "the ring";
   if (stops.fair_after_cycles == 0)

@@ -41,21 +41,27 @@ SlotRing::Slot& SlotRing::slot(std::uint32_t lane, std::uint32_t stop, Cycle now
 }
 
 void SlotRing::get_off(std::uint32_t stop, Cycle now) {
+  const Slot* second = nullptr;  // of those that come, after the oldest
   Slot* oldest = nullptr;
-  std::uint64_t come = 0;
   for (std::uint32_t lane = 0; lane < shape_.lanes(); ++lane) {
     Slot& here = slot(lane, stop, now);
     if (here.packet == kNone || here.to != stop) continue;
-    ++come;
-    if (oldest == nullptr || here.entered < oldest->entered) oldest = &here;
+    use_.extra_rounds += oldest != nullptr;
+    if (oldest == nullptr || here.entered < oldest->entered)
+      second = std::exchange(oldest, &here);
+    else if (second == nullptr || here.entered < second->entered)
+      second = &here;
   }
   if (oldest == nullptr) return;
-  if (stops_[stop].port_free > now) {
-    use_.extra_rounds += come;
+  Port& port = stops_[stop].port;
+  if (port.claimed_at <= now) port.claimed_at = kNever;
+  if (port.free > now || port.is_kept(now, port_cycles_, oldest->entered)) {
+    ++use_.extra_rounds;
+    port.claim(now + length_, oldest->entered);
     return;
   }
-  use_.extra_rounds += come - 1;
-  stops_[stop].port_free = now + port_cycles_;
+  if (second != nullptr) port.claim(now + length_, second->entered);
+  port.free = now + port_cycles_;
   use_.longest_ride = std::max(use_.longest_ride, now - oldest->entered);
   moved_ = now;
   const std::uint32_t id = std::exchange(oldest->packet, kNone);

@@ -13,7 +13,8 @@ namespace carousel::ringbus::cycle {
 /// just
 ///   been emptied there.
 /// - A flit gets off at its stop if the port is free. Of several that come at once the one that got on first does; the
-///   others go round once more, so each is passed over only for older ones, and never for ever.
+///   others go round once more. For the oldest of those that were passed over the port is kept free when it comes round
+///   again. So the oldest gets off in its second round at the latest, then the next one, and none goes round for ever.
 /// - The flits of a packet get on one by one, by any ring of its direction, and the receiver puts them together.
 /// - After `fair_after_cycles` a stop marks the first slot that passes without a mark of another stop. No other stop
 ///   fills it, so that it comes back empty once what is in it has got off. Without this a stop behind others that keep
@@ -44,12 +45,28 @@ class SlotRing final : public RingFabric {
     RingPacket packet;
     std::uint32_t left = 0;  // flits that have not got off
   };
+  /// From the ring into the stop.
+  struct Port {
+    Cycle free = 0;
+    Cycle claimed_at = kNever;  // when the oldest flit that was passed over comes round again
+    Cycle claimant = 0;         // when that flit got on
+
+    void claim(Cycle at, Cycle entered) {
+      if (claimed_at != kNever && claimant <= entered) return;
+      claimed_at = at;
+      claimant = entered;
+    }
+    /// A flit would still be in the port when an older one comes round again.
+    bool is_kept(Cycle now, Cycle cycles, Cycle entered) const {
+      return claimed_at != kNever && now + cycles > claimed_at && entered >= claimant;
+    }
+  };
   struct Stop {
     std::uint32_t packet = kNone;  // that gets on
     std::uint32_t left = 0;        // flits of it that have not got on
     bool first = false;            // the next one is the first
     Cycle ready = 0;               // when the next one is through the port
-    Cycle port_free = 0;           // from the ring
+    Port port;
     Slot* marked = nullptr;
   };
 

@@ -191,6 +191,20 @@ TEST(StopRing, OldFlitsGetOffFirst) {
   EXPECT_LE(result.stops->longest_ride, 36u * 6);
 }
 
+// A port of four cycles a flit may be busy with a younger one when an old one comes; it is kept free for its next
+// round.
+TEST(StopRing, ANarrowPortIsKeptFreeForOldFlits) {
+  const Config config =
+      ring_config(six("both: true, latency_cycles: 1, stops: {rule: slots, rings: 3, "
+                      "port_bytes_per_cycle: 8}",
+                      "sources: 's[0], s[1], s[3], s[4], s[5]', destinations: 's[2]', rate: 1, "
+                      "packets: 5000, packet_bytes: 32, warmup_fraction: 0"));
+  const TrafficResult result = run_ring(config);
+  EXPECT_EQ(result.delivered, 5000u);
+  EXPECT_GT(result.stops->extra_rounds, 1000u);
+  EXPECT_LE(result.stops->longest_ride, 2u * 36 * 6);  // two rounds for each of 36
+}
+
 TEST(StopRing, TheVerdictSaysWhoMayWait) {
   const auto verdict = [](const std::string& stops) {
     return traffic_verdict(ring_config(six("stops: {" + stops + "}", "rate: 0.1")).topology);
