@@ -1,6 +1,7 @@
 """The whole machine."""
 from .clock import Clock, Trace
 from .dram import BankedMemory
+from .graph import GraphTopology, connect_graph
 from .memory import Memory, ShapePort, caches_of
 from .network import Topology, connect
 from .prefetcher import prefetchers_of
@@ -21,10 +22,13 @@ class Machine:
         config = self.config = facts["config"]
         self.facts, self.clock, self.trace = facts, Clock(), Trace()
         self.nodes = [Node(i, fact) for i, fact in enumerate(facts["nodes"])]
-        self.topology = Topology(config)
+        graph = config["topology"]["shape"] == "graph" and config["topology"]["resources"] > 1
+        self.topology = (GraphTopology if graph else Topology)(config)
         self.initial_tests = Spread(config, facts, self.nodes).tests_at(0)
         resources, link = self.topology.resources, config["topology"]["link"]
-        ends = connect(self.clock, self.topology, link, config["testers"]["contexts"] + 1)
+        places = config["testers"]["contexts"] + 1
+        ends = (connect_graph(self.clock, self.topology, places) if graph else
+                connect(self.clock, self.topology, link, places))
         shapes = [ShapePort(config, self.clock) for _ in range(resources)]
         controls = [Control(config, self.clock) for _ in range(resources)]
         if self.topology.shape == "independent":

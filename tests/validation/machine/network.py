@@ -31,6 +31,7 @@ class Token:
         self.entries = entries  # that dispatch reads where it is an answer, or not meant for the resource
         self.answers = answers  # on a bus, an answer on its way to the packet's owner
         self.passes = passes    # on a bus, heard by a resource that has none of its rays
+        self.stop, self.sizes = None, None  # in a graph: the resource where it goes, and its cycles by width
 
 
 class InPort:
@@ -108,6 +109,9 @@ class Topology:
 
     def wanted(self, packet, at):
         return at == packet.home if packet.memberships else at in packet.owners
+
+    def port(self, packet, here):
+        return packet.direction
 
     def travels(self, packet):
         if self.resources == 1:

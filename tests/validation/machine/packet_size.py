@@ -3,14 +3,14 @@ from .clock import ceil_div
 
 
 class PacketSize:
-    def __init__(self, config, nodes):
+    def __init__(self, config, nodes, width=None):
         self.nodes = nodes
         self.ordered = config["collections"]["traversal"] == "ordered"
         self.entry = 4 if config["collections"]["policy"] == "nearest" else 0
         self.data = config["packets"]["carry"] == "data"
         self.results = config["packets"]["results"]
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
-        self.width = config["topology"]["link"]["bytes_per_cycle"]
+        self.width = width or config["topology"]["link"]["bytes_per_cycle"]
 
     # ---- on a link
 

@@ -137,4 +137,34 @@ def draw(seed, index):
         memory["sky_map"] = pick(["free", "memory", "memory"])
     if r.random() < 0.3:
         config["prefetcher"] = {"lines": pick([1, 2, 4]), "streams": pick([1, 2, 8]), "reach": pick([1, 8, 64, 4096])}
+    if (topology["shape"] in ("ring", "bidirectional", "multi_ring") and resources > 1 and
+            memory["fetch"] != "multicast" and r.random() < 0.4):
+        topology.update(draw_graph(r, resources, config["packets"]["results"] in ("mask", "implied_order")))
     return config
+
+
+def draw_graph(r, resources, widths):
+    """A network that is drawn: a ring of resources and routers, and links across."""
+    pick = r.choice
+    routers = pick([0, 1, 2])
+    nodes = [{"name": "r", "count": resources, "latency_cycles": pick([0, 0, 1, 3]), "credit_cycles": pick([0, 0, 2])}]
+    if routers:
+        nodes.append({"name": "x", "kind": "router", "count": routers, "latency_cycles": pick([0, 1, 2]),
+                      "forward": pick(["head", "whole"]), "credit_cycles": pick([0, 1])})
+    names = [f"r[{i}]" for i in range(resources)] + [f"x[{i}]" for i in range(routers)]
+    r.shuffle(names)
+
+    def own():
+        link = {"latency_cycles": pick([1, 2, 5])} if r.random() < 0.5 else {}
+        if r.random() < 0.3:
+            link["depth"] = pick([2, 3, 6])
+        if widths and r.random() < 0.4:
+            link["bytes_per_cycle"] = pick([8, 16, 64])
+        return link
+
+    links = [{"ring": ", ".join(names), "both": len(names) > 2 and pick([True, False]), **own()}]
+    if len(names) > 3:
+        a, b = names[0], names[2]  # no neighbours on the ring
+        links.append({"from": a, "to": b, "both": pick([True, False]), **own()})
+    return {"shape": "graph", "nodes": nodes, "links": links, "tour": pick(["names", "nearest"]),
+            "visit": pick(["owners", "owners", "all"])}

@@ -42,6 +42,8 @@ class Tile(Issues, Tests, Travel, Window):
         self.shapes = ShapeBuffer(config, shapes)
         self.visits = Visits(self.clock, self.nodes, self.shapes, self.testers)
         self.size = PacketSize(config, machine.nodes)
+        self.sizes = {width: PacketSize(config, machine.nodes, width)
+                      for width in (self.topology.widths if hasattr(self.topology, "drawing") else [])}
         self.ids_per_cycle = config["packets"]["ids_per_cycle"]
         self.sort_rate = config["collections"]["sort_ids_per_cycle"]
         self.issue_places = config["memory"]["fetch_ahead"] + 1
@@ -51,7 +53,9 @@ class Tile(Issues, Tests, Travel, Window):
         self.starts_later = self.fetch_by_resource or config["collections"]["traversal"] == "treelet"
         self.partial = config["collections"]["partial"]
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
-        self.bubble = config["topology"]["flow"] == "bubble" and not self.topology.bus
+        self.graph = hasattr(self.topology, "drawing")
+        self.bubble = (self.topology.bubble_holds if self.graph else
+                       config["topology"]["flow"] == "bubble" and not self.topology.bus)
         self.stays = config["collections"]["home"] == "local" or self.topology.resources == 1
         self.own_last = config["testers"]["own_rays"] == "after"
         self.central = config["topology"]["shape"] == "central"
@@ -142,8 +146,29 @@ class Tile(Issues, Tests, Travel, Window):
 
     # ---- packets on their way
 
+    def way_out(self, packet):
+        return self.out_ports[self.topology.port(packet, self.number)]
+
+    def goes_by(self, now):
+        """In a graph: packets with another stop, whatever is visited."""
+        moved = False
+        for port in self.in_ports:
+            way = lambda token: self.out_ports[self.topology.port_to(token.stop, self.number)]
+            while True:
+                seen = port.window(now, self.window)
+                place = next((i for i, token in enumerate(seen) if token.stop != self.number and
+                              (self.window == 1 or way(token).has_place())), None)
+                if place is None or not way(seen[place]).has_place():
+                    break
+                token = port.take(now, place)
+                way(token).push(token, now, self.topology.prepare(token, self.number))
+                moved = True
+        return moved
+
     def cut_through(self, now):
         moved = False
+        if self.graph:
+            return self.goes_by(now)
         if self.topology.visit_all or self.topology.bus:
             return moved
         for port, out in zip(self.in_ports, self.out_ports):
@@ -170,16 +195,21 @@ class Tile(Issues, Tests, Travel, Window):
         return self.send_new_rays(now) or self.handle_issue(now)
 
     def handle_arrival(self, d, now):
-        port, out = self.in_ports[d], self.out_ports[d]
+        port = self.in_ports[d]
         token = port.front()
         packet = token.packet
+        if self.graph and token.stop != self.number:
+            return False
+        out = self.way_out(packet)
         if token.skip > 0:
             if not self.topology.visit_all or not out.has_place():
                 return False
             port.take(now)
             token.skip -= 1
             self.dispatch(now, token.entries)
-            out.push(token, self.dispatch_free, False)
+            if self.graph:
+                token.stop = self.topology.stop(packet, self.number)
+            out.push(token, self.dispatch_free, self.graph and self.topology.prepare(token, self.number))
             return True
         if token.passes:
             port.take(now)
@@ -236,6 +266,11 @@ class Tile(Issues, Tests, Travel, Window):
             return self.say(packet, ready)
         skip = self.topology.skip(packet, self.number)
         cycles = self.size.cycles(packet, self.is_treelet(packet))
+        if self.graph:
+            token = Token(packet, skip, cycles, self.read_on_visit(packet))
+            token.stop = self.topology.stop(packet, self.number)
+            token.sizes = {width: size.cycles(packet, self.is_treelet(packet)) for width, size in self.sizes.items()}
+            return self.way_out(packet).push(token, ready, self.topology.prepare(token, self.number))
         self.out_ports[packet.direction].push(Token(packet, skip, cycles, self.read_on_visit(packet)), ready,
                                               not self.topology.visit_all and skip > 0)
 

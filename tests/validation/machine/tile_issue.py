@@ -92,7 +92,7 @@ class Issues:
         packet, user = self.issue[0].packet, self.issue[0].user
         travels = self.travels(packet)
         if travels:
-            out = self.out_ports[packet.direction]
+            out = self.way_out(packet)
             if not out.has_place() or (self.bubble and out.spare_places() < 2):
                 return False
         tested = not packet.memberships and self.number in packet.owners and not self.tests_own_last(packet)
@@ -106,7 +106,7 @@ class Issues:
         self.dispatch(now, len(packet.rays))
         if tested:
             if travels:
-                self.out_ports[packet.direction].reserved += 1
+                self.way_out(packet).reserved += 1
             if user is not None:
                 self.shapes.hand_over(user, context.user)
             self.begin_test(context, packet, self.dispatch_free, user is not None)

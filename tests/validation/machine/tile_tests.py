@@ -88,7 +88,7 @@ class Tests:
                     self.dispatch(now, entries)
                 self.retire(packet, now, entries)
             else:
-                self.out_ports[packet.direction].reserved -= 1
+                self.way_out(packet).reserved -= 1
                 self.depart(packet, now)
         return moved
 

@@ -26,18 +26,21 @@ class Window:
 
     def can_handle(self, d, token):
         packet = token.packet
+        if self.graph and token.stop != self.number:
+            return False
+        out = self.way_out(packet)
         if token.skip > 0:
-            return self.topology.visit_all and self.out_ports[d].has_place()
+            return self.topology.visit_all and out.has_place()
         if token.passes:
             return True
         if packet.records is not None:
-            return packet.owner == self.number or self.out_ports[d].has_place()
+            return packet.owner == self.number or out.has_place()
         context = self.free_context() is not None
         if token.answers:
             return context or packet.due > 1 or not self.tests_own_last(packet)
         if packet.owner == self.number:
             return context or not self.tests_own_last(packet)
-        return self.out_ports[d].has_place() and (context or not self.is_tested_here(packet))
+        return out.has_place() and (context or not self.is_tested_here(packet))
 
     def lacks_shapes(self, token):
         packet = token.packet

@@ -84,7 +84,7 @@ class Travel:
             return False
         packet, travels = self.free[d][-1], self.topology.resources > 1
         if travels:
-            out = self.out_ports[packet.direction]
+            out = self.way_out(packet)
             if not out.has_place() or (self.bubble and out.spare_places() < 2):
                 return False
         self.free[d].pop()
