@@ -90,7 +90,10 @@ Html machine_section(const Json& report, const Json& schema) {
     double carried = 0;
     for (const Json& link : *links) carried = std::max(carried, number_at(link, "packets"));
     const bool timed = links->front().contains("utilisation");
-    table.columns.insert(table.columns.begin() + 2,
+    const Json* nodes = find(report, "drawing");
+    if (nodes) table.columns.insert(table.columns.begin(), Column{"link", "", "by the names of the drawing"});
+    const std::ptrdiff_t ends = nodes ? 3 : 2;
+    table.columns.insert(table.columns.begin() + ends,
                          Column{timed ? "use" : "load", "",
                                 timed ? "share of the cycles in which it moved a packet"
                                       : "packets, over those of the link that carried most"});
@@ -99,7 +102,13 @@ Html machine_section(const Json& report, const Json& schema) {
       const double use = timed         ? number_at(link, "utilisation")
                          : carried > 0 ? number_at(link, "packets") / carried
                                        : 0;
-      table.rows[i].insert(table.rows[i].begin() + 2, share(use));
+      if (nodes) {
+        const auto name = [&](const char* end) {
+          return text_at((*nodes)[static_cast<std::size_t>(number_at(link, end))], "name");
+        };
+        table.rows[i].insert(table.rows[i].begin(), cell(name("from") + " > " + name("to")));
+      }
+      table.rows[i].insert(table.rows[i].begin() + ends, share(use));
     }
     tables += table.html();
   }

@@ -34,6 +34,7 @@ std::string run_page(const Json& report, const Picture& picture) {
   Json facts{{"resources", number_at(report, "config.topology.resources")}};
   for (const char* key : {"shape", "form", "rings", "groups"})
     if (const Json* value = find(report, std::string("config.topology.") + key)) facts[key] = *value;
+  if (const Json* nodes = find(report, "drawing")) facts["drawing"] = *nodes;
   const Json* series = find(report, "time_series");
   const std::string scene = text_at(report, "scene.name");
   return page_of(scene.empty() ? "Carousel: synthetic traffic" : "Carousel: " + scene, machine_words(report), sections,

@@ -9,6 +9,7 @@
 #include "report/sections/bottleneck.h"
 #include "report/sections/bytes.h"
 #include "report/sections/costs.h"
+#include "report/sections/drawing.h"
 #include "report/sections/engine.h"
 #include "report/sections/faults.h"
 #include "report/sections/host.h"
@@ -59,6 +60,7 @@ struct Report {
   std::optional<Packets> packets;
   std::optional<Collections> collections;
   std::optional<std::vector<Resource>> resources;
+  std::optional<std::vector<DrawnNode>> drawing;
   std::optional<std::vector<Link>> links;
   std::optional<std::vector<Rank>> ranks;
   std::optional<std::vector<RankLink>> rank_links;
@@ -109,6 +111,7 @@ void describe(V& v, const Report& r) {
   v.section("packets", r.packets, "packets of all resources");
   v.section("collections", r.collections, "collections: rays waiting for a node");
   v.section("resources", r.resources, "each resource");
+  v.section("drawing", r.drawing, "each node of a graph, by the numbers that links[].from and to have");
   v.section("links", r.links, "each link");
   v.section("ranks", r.ranks, "each process of a run with engine.transport: mpi");
   v.section("rank_links", r.rank_links, "messages from each of them to each other");

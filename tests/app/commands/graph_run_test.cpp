@@ -19,7 +19,7 @@ const std::string kMachine =
 /// All that a report says but how the machine was named, and what the host took.
 Json results(const Program& program, const std::string& folder) {
   Json report = Json::parse(program.read(folder + "/report.json"));
-  for (const char* key : {"config", "host", "ignored_keys", "checksum"}) report.erase(key);
+  for (const char* key : {"config", "host", "ignored_keys", "checksum", "drawing"}) report.erase(key);
   for (auto& [key, section] : report.items())
     if (section.is_object())
       for (const char* time : {"seconds", "wall_seconds", "build_seconds", "import_seconds"}) section.erase(time);

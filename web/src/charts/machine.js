@@ -18,7 +18,7 @@ export function machine(context) {
   const linkUse = links ? links.rows.map((r) => r[useOf(links)]) : [];
   const hubs = Math.max(0, ...ends.flat().map((node) => node + 1 - facts.resources));
   const all = facts.resources + hubs;
-  const at = places(facts, hubs);
+  const at = places(facts, hubs, ends);
   const bent = bends(ends, facts);
   const bus = facts.shape === 'bus';
   const hubName = facts.shape === 'graph' ? 'router' : 'bridge';
@@ -30,15 +30,17 @@ export function machine(context) {
   const node = (i) => {
     const hub = i >= facts.resources;
     const colour = hub ? colours.panel : scaleColour((now.resources[i] ?? 0) / most);
-    const name = hub ? (bus ? 'bus' : `${hubName} ${i - facts.resources}`) : `resource ${i}`;
-    const short = hub ? (bus ? 'bus' : `${hubName[0].toUpperCase()}${i - facts.resources}`) : `${i}`;
+    const drawn = facts.drawing?.[i].name;
+    const name = drawn ?? (hub ? (bus ? 'bus' : `${hubName} ${i - facts.resources}`) : `resource ${i}`);
+    const short = drawn ?? (hub ? (bus ? 'bus' : `${hubName[0].toUpperCase()}${i - facts.resources}`) : `${i}`);
     const ink = hub ? colours.ink : luminance(colour) > 0.5 ? '#000' : '#fff';
     return {
       id: `${i}`, name, x: at[i][0], y: at[i][1], value: hub ? undefined : now.resources[i],
       symbol: hub ? (bus ? 'rect' : 'diamond') : resources ? 'roundRect' : 'circle',
       symbolSize: hub && bus ? [width * 0.8, 22] : size,
       itemStyle: {color: colour, borderColor: colours.soft, borderWidth: 1},
-      label: {show: named || (hub && bus), color: ink, fontSize: 12, lineHeight: 14,
+      label: {show: named || (hub && bus), color: ink, lineHeight: 14,
+        fontSize: drawn ? Math.max(7, Math.min(12, Math.floor(1.7 * size / short.length))) : 12,
         formatter: valued && !hub ? `${short}\n${Math.round(100 * (now.resources[i] ?? 0))} %` : short},
     };
   };
