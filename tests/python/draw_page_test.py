@@ -14,7 +14,7 @@ class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
         page = (SOURCE / "docs" / "draw-a-machine.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 7)
+        self.assertEqual(len(blocks), 9)
         printed = []
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "bin").mkdir()
@@ -37,6 +37,9 @@ class DrawPage(unittest.TestCase):
         # The link between the dies limits the machine.
         self.assertRegex(printed[5], r"\Adoor\[\d\] +> door\[\d\] ")
         self.assertIn("# deadlock: impossible. no circle", printed[6])
+        self.assertIn("# deadlock: impossible. virtual channels: a circle of ", printed[7])
+        self.assertIn("# halves: ", printed[8])
+        self.assertIn("# wires: ", printed[8])
 
 
 if __name__ == "__main__":
