@@ -34,6 +34,11 @@ export const all = {
   bus: shape('bus'),
   point_to_point: shape('point_to_point'),
   independent: shape('independent'),
+  placed: machine('demo', [...cycle, 'topology={shape: graph, nodes: [{name: left, count: 4, at: [0, 0], step: [1, 1], columns: 2}, ' +
+    '{name: right, count: 4, at: [6, 0], step: [1, 1], columns: 2}, {name: door, kind: router, count: 2, at: [2.5, 0.5], step: [2, 0]}], ' +
+    'links: [{ring: "left[0], left[1], left[3], left[2], door[0]", both: true}, ' +
+    '{ring: "right[0], right[1], right[3], right[2], door[1]", both: true}, {from: "door[0]", to: "door[1]", both: true}]}']),
+  spread: machine('demo', [...cycle, 'topology={shape: graph, nodes: [{name: r, count: 12}], links: [{mesh: [4, 3]}]}']),
   many: shape('ring', 'topology.resources=96', 'rays.slots_per_resource=256'),
   bundles: machine('bundle_tester', cycle),
   native_life: {command: 'follow', config: 'demo', sets: small, options: ['--pixel', '3,9', '--shadow']},
