@@ -4,7 +4,6 @@
 
 #include "accel/traverse/kernels.h"
 #include "app/build_report/cycle_sections.h"
-#include "app/build_report/drawing.h"
 #include "app/build_report/effects.h"
 #include "app/build_report/energy_report.h"
 #include "app/build_report/levels_section.h"
@@ -148,7 +147,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   if (!result.resources.empty()) {
     add_ring(r, result, config, prepared.accel);
     add_links(r, result, config);
-    r.drawing = drawing(config);
+    r.drawing = drawing(config.topology);
   }
   add_ranks(r, result);
   add_ray_queues(r, result, config);

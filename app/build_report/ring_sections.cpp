@@ -5,6 +5,7 @@
 
 #include "app/build_report/nodes_section.h"
 #include "core/config/config.h"
+#include "core/config/graph/graph.h"
 #include "core/types/enum_names.h"
 #include "core/types/ray.h"
 #include "report/text/ratio.h"
@@ -128,6 +129,20 @@ void add_links(report::Report& r, const ringbus::RunResult& result, const Config
       occupancy.push_back({std::chrono::duration<double>(entry.end - result.start).count(),
                            ratio(entry.sum, entry.samples), entry.most});
   }
+}
+
+std::optional<std::vector<report::DrawnNode>> drawing(const TopologyConfig& topology) {
+  if (topology.shape != TopologyShape::kGraph) return std::nullopt;
+  std::vector<config::GraphIssue> issues;  // none in a configuration that has run
+  std::vector<report::DrawnNode> out;
+  const config::Graph graph = config::draw_graph(topology, issues);
+  for (const config::Graph::Node& node : graph.nodes) {
+    report::DrawnNode& one = out.emplace_back(report::DrawnNode{node.name});
+    if (!node.at.given) continue;
+    one.x_mm = node.at.x;
+    one.y_mm = node.at.y;
+  }
+  return out;
 }
 
 }  // namespace carousel::app

@@ -24,4 +24,7 @@ void add_links(report::Report& report, const ringbus::RunResult& result, const C
 /// Fills in the section of the queues that hand over rays, which only the native engine measures.
 void add_ray_queues(report::Report& report, const ringbus::RunResult& result, const Config& config);
 
+/// The nodes of a network that is drawn, by their numbers in the lists of the report; absent for other shapes.
+std::optional<std::vector<report::DrawnNode>> drawing(const TopologyConfig& topology);
+
 }  // namespace carousel::app

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "accel/traverse/kernels.h"
-#include "app/build_report/drawing.h"
+#include "app/build_report/ring_sections.h"
 #include "app/host/machine_info.h"
 #include "app/host/program_info.h"
 #include "app/plugins/plugins.h"
@@ -92,7 +92,7 @@ report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficRe
   r.engine.deterministic = true;
   r.engine.reason = "virtual time: nothing depends on the host's threads";
   r.links = links(config, result);
-  r.drawing = drawing(config);
+  r.drawing = drawing(config.topology);
   r.traffic = traffic(config, result);
   r.digest.hits = HitsDigest().hex();  // the digest of no rays
   r.host.threads = result.threads;

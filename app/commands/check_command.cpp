@@ -70,8 +70,9 @@ std::string graph_yaml(const TopologyConfig& config, const KeyPositions& positio
   std::string out;
   if (!drawn.same) out += fmt::format("# Not the same machine: {}.\n", drawn.difference);
   out += fmt::format("topology:\n  shape: graph\n  visit: {}\n", yaml_line(topology["visit"]));
-  for (const char* key : {"flow", "overrides"})
-    if (topology[key] != defaults[key]) out += fmt::format("  {}: {}\n", key, yaml_line(topology[key]));
+  for (const char* key : {"flow", "overrides", "routes", "root", "ways", "tour", "channels"})
+    if (topology.contains(key) && (!defaults.contains(key) || topology[key] != defaults[key]))
+      out += fmt::format("  {}: {}\n", key, yaml_line(topology[key]));
   if (const Json link = short_form(topology["link"], defaults["link"]); !link.empty())
     out += fmt::format("  link: {}\n", yaml_line(link));
   add_list(out, "nodes", topology["nodes"], defaults["nodes"][0]);

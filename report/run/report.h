@@ -9,7 +9,6 @@
 #include "report/sections/bottleneck.h"
 #include "report/sections/bytes.h"
 #include "report/sections/costs.h"
-#include "report/sections/drawing.h"
 #include "report/sections/engine.h"
 #include "report/sections/faults.h"
 #include "report/sections/host.h"

@@ -1,4 +1,6 @@
 // Machines on networks that are drawn. A shape that `check --graph` has drawn is the same machine to the last number.
+#include <set>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -160,6 +162,54 @@ TEST(GraphRun, TrafficThatCanStopNeedsForce) {
   EXPECT_NE(stuck.status, 0);
   EXPECT_THAT(stuck.err, HasSubstr("nothing moves any more"));
   EXPECT_THAT(stuck.err, Not(HasSubstr("ignores")));
+}
+
+TEST(GraphRun, TrafficOnAHierarchicalNetworkIsThatOfItsDrawing) {
+  const Program program;
+  const std::string traffic = "engine: {kind: cycle}\nworkload: {traffic: {rate: 0.05, packets: 3000}}\n";
+  program.write("lines.yaml", traffic + "topology: {shape: hierarchical, resources: 8, groups: 2, link: {depth: 4}}\n");
+  const Outcome refused = program.run({"run", "lines.yaml"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("lines.yaml:3:19: topology.shape: a circle of "));
+  const std::vector<std::string> channels{"--set", "topology.link.virtual_channels=4", "--set",
+                                          "topology.channels=dateline"};
+  const auto with_channels = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.end(), channels.begin(), channels.end());
+    return program.run(arguments);
+  };
+  const Outcome drawn = with_channels({"check", "lines.yaml", "--graph"});
+  ASSERT_EQ(drawn.status, 0) << drawn.err;
+  program.write("drawn.yaml", traffic + drawn.out);
+  const Outcome lines = with_channels({"run", "lines.yaml", "--json"}),
+                same = program.run({"run", "drawn.yaml", "--json"});
+  ASSERT_EQ(lines.status, 0) << lines.err;
+  ASSERT_EQ(same.status, 0) << same.err;
+  const Json one = Json::parse(lines.out), two = Json::parse(same.out);
+  EXPECT_EQ(one["traffic"], two["traffic"]);
+  EXPECT_EQ(one["links"], two["links"]);
+  EXPECT_EQ(one["traffic"]["delivered"], 3000);
+}
+
+TEST(GraphRun, WaysAndToursKeepThePictureAndChangeTheTime) {
+  const Program program;
+  program.write("graph.yaml", kMachine + kClusters);
+  std::set<std::uint64_t> cycles;
+  std::set<std::string> digests;
+  for (const std::vector<std::string>& sets : {std::vector<std::string>{},
+                                               {"topology.tour=nearest"},
+                                               {"topology.links.0.both=true", "topology.routes=up_down"},
+                                               {"topology.nodes.2.credit_cycles=9"}}) {
+    std::vector<std::string> arguments{"run", "graph.yaml", "--json", "--force", "--set", "verify=reference"};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const Outcome run = program.run(arguments);
+    ASSERT_EQ(run.status, 0) << testing::PrintToString(sets) << run.err;
+    const Json report = Json::parse(run.out);
+    cycles.insert(report["engine"]["cycles"].get<std::uint64_t>());
+    digests.insert(report["digest"].dump());
+    EXPECT_EQ(report["drawing"][8]["name"], "door[0]");
+  }
+  EXPECT_EQ(digests.size(), 1u);
+  EXPECT_GT(cycles.size(), 1u);
 }
 
 TEST(GraphRun, ShapesThatAreNoGraphsAreRefused) {
