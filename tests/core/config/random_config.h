@@ -37,6 +37,10 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
   void on_field(std::string_view, Vec3& value, config::RealRange range, const char*, const char*) {
     for (int axis = 0; axis < 3; ++axis) value[axis] = static_cast<float>(real(range));
   }
+  void on_field(std::string_view, GraphPoint& value, config::RealRange range, const char*, const char*) {
+    value = {};
+    if (pick(2) == 1) value = {real(range), real(range), true};
+  }
   void on_field(std::string_view, GridSize& value, config::IntRange range, const char*, const char*) {
     value = {};
     if (pick(2) == 1) {
