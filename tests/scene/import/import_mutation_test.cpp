@@ -74,7 +74,7 @@ TEST(ImportMutation, DamagedTextsLoadOrAreRefused) {
   std::filesystem::create_directories(folder);
   std::size_t loaded_of_all = 0;
   for (const Sample& sample : kSamples) {
-    const auto count = static_cast<std::size_t>(scaled(8));
+    const auto count = static_cast<std::size_t>(scaled(30));
     SceneImporter importer;
     const auto outcomes = load_guarded(
         count,
