@@ -1,4 +1,5 @@
 // Animations and skins of files that Assimp reads, at a moment. Positions are worked out by hand.
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
