@@ -7,7 +7,11 @@ namespace carousel::ringbus::cycle {
 using config::Graph;
 
 ParcelRoutes::ParcelRoutes(const ParcelPlan& plan)
-    : nodes_(plan.graph.nodes.size()), exits_(kEnumNames<Carried>.size() * nodes_ * nodes_), out_(nodes_), in_(nodes_) {
+    : plan_(plan),
+      nodes_(plan.graph.nodes.size()),
+      exits_(kEnumNames<Carried>.size() * nodes_ * nodes_),
+      out_(nodes_),
+      in_(nodes_) {
   std::vector<std::uint32_t> ports(plan.graph.links.size());  // by link of the graph
   for (std::uint32_t i = 0; i < plan.links.size(); ++i) {
     const Graph::Link& link = plan.drawn(plan.links[i]);
@@ -17,6 +21,16 @@ ParcelRoutes::ParcelRoutes(const ParcelPlan& plan)
   }
   for (const Carried what : {Carried::kShapes, Carried::kNewRays, Carried::kCompletedRays})
     find_exits(plan, what, ports);
+}
+
+std::uint64_t ParcelRoutes::cycles(Carried what, std::uint32_t from, std::uint32_t to) const {
+  std::uint64_t sum = 0;
+  for (std::uint32_t at = from; at != to;) {
+    const Graph::Link& link = plan_.drawn(plan_.links[out_[at][exit(what, at, to).port]]);
+    sum += static_cast<std::uint64_t>(plan_.graph.nodes[at].drawn->latency_cycles + link.latency_cycles);
+    at = link.to;
+  }
+  return sum;
 }
 
 void ParcelRoutes::find_exits(const ParcelPlan& plan, Carried what, const std::vector<std::uint32_t>& ports) {

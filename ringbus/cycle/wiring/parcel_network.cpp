@@ -189,6 +189,21 @@ void ParcelNetwork::join(const MemorySystem& memory) {
     }
 }
 
+Cycle ParcelNetwork::way_to_memory(std::uint32_t resource) const {
+  if (plan_.parts.caches.empty()) return 0;
+  const auto there_and_back = [this](std::uint32_t from, std::uint32_t to) {
+    return routes_.cycles(Carried::kShapes, from, to) + routes_.cycles(Carried::kShapes, to, from) + 2 * kDoorCycles;
+  };
+  Cycle longest = 0;
+  for (const std::uint32_t cache : plan_.parts.caches[plan_.parts.caches_of[resource]].nodes) {
+    Cycle behind = 0;
+    for (const std::uint32_t memory : plan_.parts.memories.nodes)
+      behind = std::max(behind, there_and_back(cache, memory));
+    longest = std::max(longest, there_and_back(resource, cache) + behind);
+  }
+  return longest;
+}
+
 std::vector<Agent*> ParcelNetwork::agents() const {
   std::vector<Agent*> out;
   for (const auto& relay : relays_) out.push_back(relay.get());

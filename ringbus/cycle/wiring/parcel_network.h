@@ -40,6 +40,8 @@ class ParcelNetwork {
   const ParcelPlan& plan() const { return plan_; }
   const std::vector<std::unique_ptr<Relay>>& relays() const { return relays_; }
   const std::vector<std::unique_ptr<SharedLink>>& shared_links() const { return shared_; }
+  /// The longest way of a resource's requests over links to its caches and on to memory, and back.
+  Cycle way_to_memory(std::uint32_t resource) const;
   /// Agents over which messages travel.
   std::vector<Agent*> agents() const;
   /// Nothing has happened on the links since.

@@ -107,6 +107,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     }
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     settings.blocks = shape_blocks_.get();
+    if (parcels_) settings.way_to_memory = parcels_->way_to_memory(r);
     if (recorder_) settings.recording = recorder_->of_resource(id);
     if (shared_.topology.has_packets()) {
       Network::NodePorts links = network_.ports_at(id);

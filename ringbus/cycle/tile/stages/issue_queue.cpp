@@ -13,7 +13,8 @@ IssueQueue::IssueQueue(const TileParts& parts, const TileSettings& settings, con
       room_(room),
       multicast_(settings.memory, parts.resource.id(), parts.machine.topology.resources()),
       partial_(settings.resource.collections.partial),
-      memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles)),
+      memory_latency_(static_cast<Cycle>(settings.memory.l2_latency_cycles + settings.memory.dram_latency_cycles) +
+                      settings.way_to_memory),
       fetch_by_resource_(settings.fetches_by_resource()),
       contexts_fetch_(!parts.machine.stays && contexts.starts_later()),
       first_user_(static_cast<ShapeBuffer::User>(settings.testers.contexts)),

@@ -37,6 +37,8 @@ struct TileSettings {
   Recording recording{};
   const ShapeBlocks* blocks = nullptr;  ///< by which collections are keyed; null: by nodes
 
+  Cycle way_to_memory = 0;  ///< cycles over drawn links to memory and back, besides the latencies of `memory`
+
   /// A packet does not bring its shapes: each resource fetches those that it needs.
   bool fetches_by_resource() const { return memory.fetch != MemoryConfig::Fetch::kPacket; }
 };
