@@ -282,12 +282,31 @@ TEST(DrawnShading, IsThatOfSideWiresWhenItsLinksAreAsLongAndNeverBusy) {
   expect_same(side.result, there.result);
   EXPECT_EQ(there.result.cycle->links.size(), 12u);
   expect_rows_of_links(*there.result.cycle);
-  EXPECT_GT(run_text(scene, text(pool, star("new_rays, completed_rays", 70)), hop).result.cycle->cycles,
-            side.result.cycle->cycles);
-  for (const char* one : {"new_rays", "completed_rays"}) {
-    const Outcome half = run_text(scene, text(pool, star(one, 7)), hop);
-    EXPECT_LT(half.result.cycle->cycles, side.result.cycle->cycles) << one;  // the other has but a hop of 4
-  }
+}
+
+TEST(DrawnShading, ARayTakesTheTimeOfItsWay) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 3000, 0), 60, 1);
+  // One ray at a time.
+  const auto run = [&](const std::string& carries, int latency, int width) {
+    return run_text(scene, fmt::format("rays: {{slots_per_resource: 1}}\npackets: {{rays: 1}}\n"
+                                       "collections: {{ready: 1, traversal: ordered}}\nshading: {{workers: 1}}\n"
+                                       "memory: {{fetch_ahead: 0}}\ntopology:\n  shape: graph\n"
+                                       "  nodes: [{{name: r}}, {{name: pool, kind: shading}}]\n"
+                                       "  links: [{{from: pool, to: r, both: true, carries: [{}], "
+                                       "latency_cycles: {}, bytes_per_cycle: {}}}]\n",
+                                       carries, latency, width))
+        .result;
+  };
+  const RunResult both = run("new_rays, completed_rays", 7, 65536), half = run("new_rays", 7, 65536);
+  const std::uint64_t rays = both.rays_completed;
+  ASSERT_GT(rays, 60u);
+  EXPECT_EQ(run("new_rays, completed_rays", 70, 65536).cycle->cycles, both.cycle->cycles + 2 * 63 * rays);
+  EXPECT_EQ(run("new_rays", 70, 65536).cycle->cycles, half.cycle->cycles + 63 * rays);
+  EXPECT_EQ(both.cycle->cycles, half.cycle->cycles + 8 * rays);  // the link and the cycle from it
+  // 68 bytes there, a record and a number, and 64 back.
+  EXPECT_EQ(run("new_rays, completed_rays", 7, 8).cycle->cycles, both.cycle->cycles + (8 + 7) * rays);
+  EXPECT_EQ(both.cycle->links[0].bytes, 68 * rays);
+  EXPECT_EQ(both.cycle->links[1].bytes, 64 * rays);
 }
 
 }  // namespace
