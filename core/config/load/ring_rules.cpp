@@ -36,6 +36,22 @@ void check_stops(const RingStops& stops, const std::string& key, const RuleBreac
   only(!grants && stops.transfers.has_value(), "transfers", "grants");
 }
 
+/// The keys of a node where packets wait.
+void check_stop(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
+  const auto none = [&](std::string_view name, std::int64_t found) {
+    if (found > 0)
+      breach(fmt::format("{}.{}", key, name),
+             fmt::format("nothing waits at a stop, whose time is that of the link behind it; expected none, found {}",
+                         found));
+  };
+  none("latency_cycles", node.latency_cycles);
+  none("credit_cycles", node.credit_cycles);
+  none("claim_cycles", node.claim_cycles);
+  none("buffers", node.buffers.value_or(0));
+  if (node.forward != Forward::kHead)
+    breach(key + ".forward", fmt::format("nothing waits at a stop; expected head, found {}", enum_name(node.forward)));
+}
+
 /// A ring with stops is the whole network, and nothing but synthetic traffic rides on it.
 void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
@@ -54,6 +70,15 @@ void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry
            fmt::format("a ring with rule: {} holds a flit for each cycle of its latency and has no queues; expected "
                        "auto, found {}",
                        rule, *link.depth));
+  const GraphLink plain;
+  const auto only = [&](bool differs, std::string_view name, std::string_view expected) {
+    if (differs)
+      breach(fmt::format("{}.{}", key, name),
+             fmt::format("a ring with rule: {} has no queues and carries packets; expected {}", rule, expected));
+  };
+  only(link.virtual_channels.has_value(), "virtual_channels", "auto");
+  only(link.dateline, "dateline", "false");
+  only(link.carries != plain.carries, "carries", "[packets]");
   if (c.links.size() > 1)
     return breach(fmt::format("topology.links.{}", entry == 0 ? 1 : 0),
                   fmt::format("a ring with rule: {} is the whole network; expected no other links", rule));
@@ -66,11 +91,8 @@ void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry
     if (!on_ring[i])
       breach(key + ".ring",
              fmt::format("the ring is the whole network; expected all nodes, and {} is missing", node.name));
-    if (node.drawn->latency_cycles > 0)
-      breach(fmt::format("topology.nodes.{}.latency_cycles", node.entry),
-             fmt::format("nothing waits at a stop, whose time is that of the link behind it; expected 0, found {}",
-                         node.drawn->latency_cycles));
   }
+  for (std::size_t i = 0; i < c.nodes.size(); ++i) check_stop(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
   const std::size_t lanes = static_cast<std::size_t>(link.stops.rings) * (link.both ? 2 : 1);
   if (stops < 3 || graph.links.size() != stops * lanes)
     breach(key + ".ring", fmt::format("expected three nodes at least, each of them once, found {} nodes in {} steps",

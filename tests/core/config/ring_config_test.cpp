@@ -54,6 +54,7 @@ const std::string kSlots = "{ring: 'r[*]', stops: {rule: slots}";
 const std::string kRayed = "scene: {builtin: cornell}\n" + three(kSlots + "}");
 const std::string kNoRing = kTraffic + three("{line: 'r[*]', both: true, stops: {rule: slots}}");
 const std::string kDeep = kTraffic + three(kSlots + ", depth: 4}");
+const std::string kChannels = kTraffic + three(kSlots + ", virtual_channels: 2}");
 const std::string kTwo = kTraffic + three(kSlots + "}\n    - {from: 'r[0]', to: 'r[2]'}");
 const std::string kPart = kTraffic +
                           "topology: {shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[0..2]', stops: "
@@ -82,6 +83,8 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"NoRing", kNoRing.c_str(), "topology.links.0.stops.rule: only a ring has such stops"},
         BadConfig{"Depth", kDeep.c_str(),
                   "topology.links.0.depth: a ring with rule: slots holds a flit for each cycle"},
+        BadConfig{"Channels", kChannels.c_str(),
+                  "topology.links.0.virtual_channels: a ring with rule: slots has no queues"},
         BadConfig{"TwoLinks", kTwo.c_str(), "topology.links.1: a ring with rule: slots is the whole network"},
         BadConfig{"NotOnTheRing", kPart.c_str(), "topology.nodes.0: r[3] has no link"},
         BadConfig{"NodeLatency", kLate.c_str(), "topology.nodes.0.latency_cycles: nothing waits at a stop"},
