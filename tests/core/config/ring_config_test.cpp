@@ -97,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "grants"},
         BadConfig{"NamesOfAShape", kNames.c_str(), "workload.traffic.sources: only the nodes of a graph have names"},
         BadConfig{"UnknownDestination", kUnknown.c_str(),
-                  "workload.traffic.destinations: expected a node, found 's'; did you mean 'r[*]'?"},
+                  "workload.traffic.destinations: expected a node, found 's'; known are r"},
         BadConfig{"OddExchange", kOdd.c_str(), "workload.traffic.pattern: exchange pairs the resources"},
         BadConfig{"AnswersWithQueues", kAnswer.c_str(),
                   "workload.traffic.reply_bytes: answers are modelled on a ring with stops"},
