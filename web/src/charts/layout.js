@@ -5,27 +5,48 @@ const circle = (n, i, radius, x = 0, y = 0, from = -Math.PI / 2) => {
   return [x + radius * Math.cos(angle), y + radius * Math.sin(angle)];
 };
 
-/** Places of a graph whose nodes have none: links pull, nodes push (T. Fruchterman, E. Reingold, Graph drawing by
- * force-directed placement, Software: Practice and Experience 21 (1991)), from a circle on, so that it is the same each time. */
+/** Places of a graph whose nodes have none: as far from one another as there are links between them, as well as that goes in
+ * a plane (E. Gansner, Y. Koren, S. North, Graph drawing by stress majorization, Graph Drawing 2004). It begins with the
+ * distances from nodes that are far apart, so that it is the same each time. */
 function spread(count, links) {
-  const at = Array.from({length: count}, (_, i) => circle(count, i, 1));
-  const ideal = 1.6 / Math.sqrt(count), rounds = Math.max(40, Math.min(300, Math.round(4e6 / (count * count))));
-  for (let round = 0; round < rounds; ++round) {
-    const force = at.map(() => [0, 0]);
-    const pull = (a, b, strength) => {
-      const x = at[b][0] - at[a][0], y = at[b][1] - at[a][1], far = Math.max(1e-3, Math.hypot(x, y)), by = strength(far) / far;
-      force[a][0] += x * by; force[a][1] += y * by;
-      force[b][0] -= x * by; force[b][1] -= y * by;
-    };
-    for (let a = 0; a < count; ++a) for (let b = a + 1; b < count; ++b) pull(a, b, (far) => -ideal * ideal / far);
-    for (const [a, b] of links) pull(a, b, (far) => far * far / ideal / 2);
-    const most = 0.15 * (1 - round / rounds) + 0.002;
-    at.forEach((place, i) => {
-      const size = Math.max(1e-9, Math.hypot(...force[i])), by = Math.min(size, most) / size;
-      place[0] += force[i][0] * by; place[1] += force[i][1] * by;
+  const beside = Array.from({length: count}, () => []);
+  for (const [a, b] of links) { beside[a].push(b); beside[b].push(a); }
+  const far = beside.map((_, start) => {
+    const links = new Array(count).fill(count), open = [start];
+    links[start] = 0;
+    for (const at of open) for (const next of beside[at]) if (links[next] === count) { links[next] = links[at] + 1; open.push(next); }
+    return links;
+  });
+  const best = (value) => far.reduce((top, _, i) => (value(i) > value(top) ? i : top), 0);
+  const a = best((i) => far[0][i]), b = best((i) => far[a][i]);
+  const c = best((i) => Math.min(far[a][i], far[b][i]) - Math.abs(far[a][i] - far[b][i])), d = best((i) => far[c][i] - Math.abs(far[a][i] - far[b][i]));
+  let at = far.map((_, i) => {
+    const [x, y] = circle(count, i, 0.05);
+    return [far[a][i] - far[b][i] + x, far[c][i] - far[d][i] + y];
+  });
+  const rounds = Math.max(30, Math.min(300, Math.round(6e6 / (count * count))));
+  for (let round = 0; round < rounds; ++round)
+    at = at.map(([x, y], i) => {
+      let sum = 0, nextX = 0, nextY = 0;
+      for (let j = 0; j < count; ++j) {
+        if (i === j) continue;
+        const weight = 1 / far[i][j] ** 2, apart = Math.max(1e-6, Math.hypot(x - at[j][0], y - at[j][1])), by = far[i][j] / apart;
+        sum += weight;
+        nextX += weight * (at[j][0] + (x - at[j][0]) * by);
+        nextY += weight * (at[j][1] + (y - at[j][1]) * by);
+      }
+      return sum > 0 ? [nextX / sum, nextY / sum] : [x, y];
     });
-  }
   return at;
+}
+
+/** The least distance between two places, when they fill so many pixels. */
+export function leastGap(at, width, height) {
+  const span = (axis) => Math.max(...at.map((p) => p[axis])) - Math.min(...at.map((p) => p[axis]));
+  const scale = Math.min(width / Math.max(1e-9, span(0)), height / Math.max(1e-9, span(1)));
+  let least = Infinity;
+  for (let i = 0; i < at.length; ++i) for (let j = 0; j < i; ++j) least = Math.min(least, Math.hypot(at[i][0] - at[j][0], at[i][1] - at[j][1]));
+  return least * scale;
 }
 
 /** The places of the resources and, behind them, of the hubs: [x, y] each. `hubs` is their number; `links` have the

@@ -1,7 +1,7 @@
 // The machine as it is: every resource and link, coloured by its use; with time series, at any time of the run.
 import {base, full, kScale, percent, roundMost, scaleColour} from '../look.js';
 import {hasSeries, series} from '../series.js';
-import {bends, places} from './layout.js';
+import {bends, leastGap, places} from './layout.js';
 
 const luminance = (rgb) => {
   const [r, g, b] = rgb.match(/[\d.]+/g).map(Number);
@@ -25,7 +25,8 @@ export function machine(context) {
   const most = context.most ?? roundMost([...resourceUse, ...linkUse]);
   const now = context.now ?? {resources: resourceUse, links: linkUse};
   const room = Math.min(width, height) * (facts.shape === 'independent' || bus ? 1.2 : 2.2);
-  const size = Math.max(5, Math.min(46, room / Math.max(4, all)));
+  const gap = facts.shape === 'graph' ? 0.72 * leastGap(at, width - 80, height - 106) : Infinity;
+  const size = Math.max(5, Math.min(46, room / Math.max(4, all), gap));
   const named = size >= 24, valued = size >= 38;
   const node = (i) => {
     const hub = i >= facts.resources;
