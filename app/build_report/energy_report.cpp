@@ -9,6 +9,7 @@
 #include "core/config/costs.h"
 #include "core/config/write.h"
 #include "report/text/ratio.h"
+#include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/topology/wire_length.h"
 
 namespace carousel::app {
