@@ -57,7 +57,7 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "shading.lanes": 1, "shading.sort": {"shader": "none"}, "shading.sort_rays_per_cycle": 1,
         "memory.fetch": {"multicast": "resource"}, "memory.ray_records": {"master": "resource"},
         "memory.shape_stay": {"while_used": "until_replaced"}, "memory.path_state": {"memory": "free"}, "memory.film": {"memory": "free"},
-        "memory.sky_map": {"memory": "free"},
+        "memory.sky_map": {"memory": "free"}, "prefetcher.lines": {1: 2, 2: 1, 4: 3}, "prefetcher.reach": -7,
         "packets.results": {"per_shape": "mask", "message": "mask", "implied_order": "mask"},
         "packets.made_per": {"child": "parent"}, "testers.own_rays": {"after": "before"}, "testers.window": 1}
 
