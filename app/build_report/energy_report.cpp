@@ -118,7 +118,7 @@ class Account {
                                             pj(Cost::kWire));
     }
     if (row.what == "new rays" || row.what == "completed rays") access(EnergyPart::kRayStore, bytes, rays_kib_);
-    if (row.to == "L1") access(EnergyPart::kL1, bytes, l1_kib());
+    if (row.from == "L2" && row.to == "L1") access(EnergyPart::kL1, bytes, l1_kib());
     if (row.what == "shape data") access(EnergyPart::kShapeBuffers, bytes, buffer_kib());
   }
 
