@@ -13,9 +13,10 @@ namespace carousel::ringbus {
 /// What travels over drawn links beside packets (`topology.links.carries`), and between which parts: plain data of a
 /// configuration, which must outlive it. Nothing where no such part is drawn.
 ///
-/// These messages wait for nothing but the time of links: every node has room for all of them there are. Their number
-/// is bounded, as an answer follows a request, and requests wait for places of shape buffers, misses or slots. So
-/// neither requests nor answers nor packets hold up one another for ever, and no circle of links can close.
+/// These messages wait for nothing but the time of links: every node has room for all of them there are. So neither
+/// requests nor answers nor packets hold up one another for ever, and no circle of links can close. What asks for an
+/// answer is bounded by places of shape buffers, misses and slots; lines that are written are bounded by nothing, as
+/// on wires of their own.
 struct ParcelPlan {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
