@@ -280,7 +280,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"TrafficWithoutLinks",
                   "engine: {kind: cycle}\ntopology: {shape: independent}\nworkload: {traffic: {rate: 0.5}}\n",
                   "test.yaml:2:19: topology.shape: there is no traffic on independent; expected ring, bidirectional, "
-                  "multi_ring, point_to_point or graph"},
+                  "multi_ring, hierarchical, point_to_point or graph"},
         BadConfig{"DirectWiresVisitingAll", SCENE "topology: {shape: point_to_point, visit: all}\n",
                   "test.yaml:2:42: topology.visit: point_to_point sends a packet straight to the owners of its rays, "
                   "and to visit all "

@@ -88,7 +88,9 @@ TEST(RandomGraphs, RaysComeToTheirEndWhereTheVerdictSaysSo) {
   for (int i = cell_count(24); i > 0; --i) {
     RandomGraph graph(seed + static_cast<std::uint64_t>(i));
     const auto pick = [&](std::initializer_list<const char*> of) { return *(of.begin() + graph.draw(of.size())); };
-    std::string text = "engine: {kind: cycle}\nrays: {slots_per_resource: 16}\npackets: {rays: 4}\ntopology:\n";
+    std::string text =
+        "scene: {builtin: terrain}\nengine: {kind: cycle}\nrays: {slots_per_resource: 16}\npackets: {rays: "
+        "4}\ntopology:\n";
     text += fmt::format("  shape: graph\n  visit: {}\n  flow: {}\n  routes: {}\n  tour: {}\n", pick({"owners", "all"}),
                         pick({"credits", "none"}), pick({"shortest", "up_down"}), pick({"names", "nearest"}));
     text += fmt::format("  link: {{depth: {}}}\n", 1 + graph.draw(4));

@@ -139,7 +139,8 @@ def draw(seed, index):
         config["prefetcher"] = {"lines": pick([1, 2, 4]), "streams": pick([1, 2, 8]), "reach": pick([1, 8, 64, 4096])}
     if (topology["shape"] in ("ring", "bidirectional", "multi_ring") and resources > 1 and
             memory["fetch"] != "multicast" and r.random() < 0.4):
-        topology.update(draw_graph(r, resources, config["packets"]["results"] in ("mask", "implied_order")))
+        topology["resources"] = pick([resources, 4, 5])
+        topology.update(draw_graph(r, topology["resources"], config["packets"]["results"] in ("mask", "implied_order")))
     return config
 
 
@@ -166,5 +167,5 @@ def draw_graph(r, resources, widths):
     if len(names) > 3:
         a, b = names[0], names[2]  # no neighbours on the ring
         links.append({"from": a, "to": b, "both": pick([True, False]), **own()})
-    return {"shape": "graph", "nodes": nodes, "links": links, "tour": pick(["names", "nearest"]),
+    return {"shape": "graph", "nodes": nodes, "links": links, "tour": pick(["names", "nearest", "nearest"]),
             "visit": pick(["owners", "owners", "all"])}
