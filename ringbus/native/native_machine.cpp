@@ -32,7 +32,7 @@ NativeMachine::NativeMachine(const Config& config, const accel::Accel& accel, fl
   require_both_ways(config.rays.queue.kind, "rays.queue", share.alone() ? 1 : threads, 1);
   shared.control.queue_groups(config.rays.queue.kind, static_cast<std::size_t>(config.rays.queue.depth));
   if (!share.alone()) gate = std::make_unique<RankGate>(config, *transport, shared, completed);
-  if (!shared.topology.hubs().empty()) stops.resize(shared.packets.size());
+  if (shared.topology.routed()) stops.resize(shared.packets.size());
   Config of_wire = config;  // the links of a graph may differ in depth
   for (const Topology::Wire& wire : shared.topology.wires()) {
     if (wire.depth > 0) of_wire.topology.link.depth = wire.depth;

@@ -24,8 +24,8 @@ struct NativeMachine {
 
   Machine shared;
   std::vector<std::unique_ptr<Link>> links;  ///< as shared.topology.wires()
-  /// By packet: the resource to which it is on its way. Written by the one that sends the packet, and read by the
-  /// routers that pass it on. Empty without routers.
+  /// By packet: the resource that it visits next. Written there when it goes on, and read by the nodes on its way,
+  /// which pass it on. Empty unless packets are routed.
   std::vector<ResourceId> stops;
   CompletedQueue completed;
   std::unique_ptr<RankGate> gate;  ///< null: the whole machine is here

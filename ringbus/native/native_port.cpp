@@ -155,7 +155,9 @@ bool NativePort::receive_routed() {
 /// A packet is at home, or can go on from here.
 bool NativePort::may_take_in(PacketId id) const {
   const Packet& packet = machine_.packet(id);
-  return packet.owner == resource_.id() || out_ports_[logic_.out_port(packet)].egress.size() < egress_places_;
+  const bool passing = passes(id);
+  if (!passing && packet.owner == resource_.id()) return true;
+  return out_ports_[passing ? port_to_stop(id) : logic_.out_port(packet)].egress.size() < egress_places_;
 }
 
 bool NativePort::receive() {
@@ -174,8 +176,13 @@ bool NativePort::receive() {
 
 void NativePort::arrive(PacketId id) {
   Packet& packet = machine_.packet(id);
-  const PacketFate fate = logic_.fate(packet);
   const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
+  if (passes(id)) {
+    if (recorder_ != nullptr) [[unlikely]]
+      note_visit(id, false, begin);
+    return pass_on(id, port_to_stop(id));
+  }
+  const PacketFate fate = logic_.fate(packet);
   switch (fate) {
     case PacketFate::kRetire:
       return retire_at_owner(id, begin);
@@ -208,7 +215,11 @@ void NativePort::arrive(PacketId id) {
 void NativePort::forward(PacketId id) {
   const Packet& packet = machine_.packet(id);
   if (stops_ != nullptr) (*stops_)[id.value] = machine_.topology.next(packet, resource_.id());
-  out_ports_[logic_.out_port(packet)].egress.push_back(id);
+  pass_on(id, logic_.out_port(packet));
+}
+
+void NativePort::pass_on(PacketId id, std::size_t port) {
+  out_ports_[port].egress.push_back(id);
   if (sink_ != nullptr) sink_->record({.kind = EventKind::kHop, .resource = resource_.id(), .packet = id});
 }
 

@@ -98,6 +98,12 @@ class NativePort {
   void retire_at_owner(PacketId id, std::uint64_t begin);
   void packet_returned();
   void forward(PacketId id);
+  void pass_on(PacketId id, std::size_t port);
+  /// It is on its way to another resource, and has nothing to do here.
+  bool passes(PacketId id) const { return stops_ != nullptr && (*stops_)[id.value] != resource_.id(); }
+  std::size_t port_to_stop(PacketId id) const {
+    return machine_.topology.exit(resource_.id(), (*stops_)[id.value]).port;
+  }
   void test(Packet& packet) {
     ++visits_now_;
     if (gate_ == nullptr || gate_->shapes() == nullptr) return static_cast<void>(resource_.test(packet));
@@ -138,7 +144,7 @@ class NativePort {
   std::vector<OutPort> out_ports_;
   bool routed_;  // packets of one link go on by several
   std::size_t egress_limit_;
-  std::vector<ResourceId>* stops_;     // null: there are no routers
+  std::vector<ResourceId>* stops_;     // null: packets are not routed
   std::size_t egress_places_;          // of a graph, for packets of others
   std::size_t turn_ = 0;               // of a graph: the link whose packets are taken first
   std::atomic<std::uint32_t> out_{0};  // own packets under way; written by the owner
