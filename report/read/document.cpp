@@ -1,5 +1,6 @@
 #include "report/read/document.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -8,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/config/load/load.h"
+#include "core/config/schema.h"
 #include "core/numeric/bytes_digest.h"
 #include "core/system/error.h"
 #include "core/system/version.h"
@@ -91,9 +93,32 @@ void require_below(const std::string& path, const Required& required) {
   }
 }
 
+/// A configuration without what its plugins have brought. No report makes the program open a plugin: it may come from a
+/// stranger, and the plugin need not be there any more.
+Json without_plugins(Json config) {
+  const Json::json_pointer plugins("/engine/plugins"), workload("/workload/plugin");
+  if (!config.contains(plugins) || config[plugins].empty()) return config;
+  config["engine"].erase("plugins");
+  if (config.contains(workload)) config.erase("workload");
+  for (const std::string& key : config::config_key_paths()) {
+    const std::vector<std::string> known = config::enum_values(key);
+    const std::size_t dot = key.rfind('.');
+    if (known.empty() || dot == key.npos) continue;
+    std::string section = "/" + key.substr(0, dot);
+    std::replace(section.begin(), section.end(), '.', '/');
+    const Json::json_pointer at(section);
+    const std::string name = key.substr(dot + 1);
+    if (!config.contains(at) || !config[at].is_object() || !config[at].contains(name)) continue;
+    const Json& value = config[at][name];
+    if (value.is_string() && std::find(known.begin(), known.end(), value.get<std::string>()) == known.end())
+      config[at].erase(name);
+  }
+  return config;
+}
+
 void require_configuration(const Json& report) {
   try {
-    load_config({report["config"].dump(), "config.json"}, {}, {.fields_only = true});
+    load_config({without_plugins(report["config"]).dump(), "config.json"}, {}, {.fields_only = true});
   } catch (const ConfigError& error) {
     const ConfigIssue& issue = error.issues().front();
     throw JsonFault(path_below("config", issue.key_path), issue.message);

@@ -184,7 +184,7 @@ TEST_F(Plugins, ASweepKnowsTheNamesAndTheContents) {
                                "[oldest, broad_first]}\n");
   const Outcome first = program_.run({"sweep", "s.yaml", "--out", "s"});
   ASSERT_EQ(first.status, 0) << first.err;
-  EXPECT_THAT(program_.read("s/results.csv"), HasSubstr("broad_first"));
+  EXPECT_THAT(program_.read("s/sweep.csv"), HasSubstr("broad_first"));
   const Outcome again = program_.run({"sweep", "s.yaml", "--out", "s", "--dry-run"});
   EXPECT_THAT(again.out + again.err, HasSubstr("2 done"));
   // Another plugin of the same names is another machine.
