@@ -45,7 +45,7 @@ NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSe
       stops_after_(stops_after(settings.faults.resource, id)),
       routed_(machine_.topology.routed() && !is_one_ring(machine_.topology)),
       egress_limit_(machine_.flow.egress_limit(kReceiveBatch)),
-      stops_(machine.stops.empty() ? nullptr : &machine.stops),
+      stops_{machine.stops.empty() ? nullptr : &machine.stops, resource_.id()},
       egress_places_(machine_.topology.room_for_all() ? std::numeric_limits<std::size_t>::max() : kReceiveBatch) {
   const Topology::Ports& ports = machine_.topology.ports(id);
   for (const std::uint32_t wire : ports.in)
@@ -155,9 +155,10 @@ bool NativePort::receive_routed() {
 /// A packet is at home, or can go on from here.
 bool NativePort::may_take_in(PacketId id) const {
   const Packet& packet = machine_.packet(id);
-  const bool passing = passes(id);
+  const bool passing = stops_.passes(id);
   if (!passing && packet.owner == resource_.id()) return true;
-  return out_ports_[passing ? port_to_stop(id) : logic_.out_port(packet)].egress.size() < egress_places_;
+  return out_ports_[passing ? stops_.port(machine_.topology, id) : logic_.out_port(packet)].egress.size() <
+         egress_places_;
 }
 
 bool NativePort::receive() {
@@ -177,10 +178,10 @@ bool NativePort::receive() {
 void NativePort::arrive(PacketId id) {
   Packet& packet = machine_.packet(id);
   const std::uint64_t begin = recorder_ != nullptr ? recorder_->now() : 0;
-  if (passes(id)) {
+  if (stops_.passes(id)) {
     if (recorder_ != nullptr) [[unlikely]]
       note_visit(id, false, begin);
-    return pass_on(id, port_to_stop(id));
+    return pass_on(id, stops_.port(machine_.topology, id));
   }
   const PacketFate fate = logic_.fate(packet);
   switch (fate) {
@@ -214,7 +215,7 @@ void NativePort::arrive(PacketId id) {
 
 void NativePort::forward(PacketId id) {
   const Packet& packet = machine_.packet(id);
-  if (stops_ != nullptr) (*stops_)[id.value] = machine_.topology.next(packet, resource_.id());
+  if (stops_.all != nullptr) (*stops_.all)[id.value] = machine_.topology.next(packet, resource_.id());
   pass_on(id, logic_.out_port(packet));
 }
 

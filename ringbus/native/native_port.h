@@ -68,6 +68,14 @@ class NativePort {
     std::uint16_t direction;
     std::deque<PacketId> waiting;  // of a graph: taken off the link; the first one has found no place
   };
+  /// The resources for which packets of a graph are bound next, as a resource sees them.
+  struct NextStops {
+    std::vector<ResourceId>* all;  // by packet; null: packets are not routed
+    ResourceId here;
+
+    bool passes(PacketId id) const { return all != nullptr && (*all)[id.value] != here; }
+    std::size_t port(const Topology& topology, PacketId id) const { return topology.exit(here, (*all)[id.value]).port; }
+  };
   /// One link, and the packets that the link has not taken yet.
   struct OutPort {
     Link* link;
@@ -99,11 +107,6 @@ class NativePort {
   void packet_returned();
   void forward(PacketId id);
   void pass_on(PacketId id, std::size_t port);
-  /// It is on its way to another resource, and has nothing to do here.
-  bool passes(PacketId id) const { return stops_ != nullptr && (*stops_)[id.value] != resource_.id(); }
-  std::size_t port_to_stop(PacketId id) const {
-    return machine_.topology.exit(resource_.id(), (*stops_)[id.value]).port;
-  }
   void test(Packet& packet) {
     ++visits_now_;
     if (gate_ == nullptr || gate_->shapes() == nullptr) return static_cast<void>(resource_.test(packet));
@@ -144,7 +147,7 @@ class NativePort {
   std::vector<OutPort> out_ports_;
   bool routed_;  // packets of one link go on by several
   std::size_t egress_limit_;
-  std::vector<ResourceId>* stops_;     // null: packets are not routed
+  NextStops stops_;
   std::size_t egress_places_;          // of a graph, for packets of others
   std::size_t turn_ = 0;               // of a graph: the link whose packets are taken first
   std::atomic<std::uint32_t> out_{0};  // own packets under way; written by the owner
