@@ -65,7 +65,9 @@ class PartFinder {
     }
     if (parts_.caches.empty()) return refuse_carrier(Carried::kShapes, "a node of the kind cache, or packets alone");
     parts_.caches_of.assign(graph_.resources, kNone);
+    const std::size_t before = issues_.size();
     for (std::size_t group = 0; group < parts_.caches.size(); ++group) serve(group);
+    if (issues_.size() > before) return;  // the resources that ask nobody are those
     bool all = true;
     for (std::uint32_t r = 0; r < graph_.resources; ++r) {
       if (parts_.caches_of[r] != kNone) continue;

@@ -213,7 +213,7 @@ TEST(GraphConfig, PartsThatCannotWorkAreRefusedByName) {
   for (const BadPart& bad : {
 
            BadPart{with_cache("    - {from: 'r[0]', to: l2, both: true, carries: [shapes]}\n" + kToMemory),
-                   "test.yaml:8:5: topology.links: there is no way from r[1] to l2 over links that carry shapes"},
+                   "test.yaml:10:5: topology.links: there is no way from r[1] to l2 over links that carry shapes"},
            BadPart{with_cache("    - {from: 'r[*]', to: l2, carries: [shapes]}\n" + kToMemory),
                    "topology.links: there is no way from l2 to r[0] over links that carry shapes"},
            BadPart{with_cache(kToCache + "    - {from: l2, to: dram, both: true}\n"),
@@ -222,7 +222,7 @@ TEST(GraphConfig, PartsThatCannotWorkAreRefusedByName) {
            BadPart{with_cache(kToCache + kToMemory, ", serves: 'r[0]'"),
                    "topology.nodes: r[1] has no memory: no cache serves it"},
            BadPart{with_cache(kToCache + kToMemory, ", serves: 'q[0]'"),
-                   "test.yaml:7:43: topology.nodes.1.serves: expected a node, found 'q'"},
+                   "test.yaml:7:39: topology.nodes.1.serves: expected a node, found 'q'"},
            BadPart{with_cache(kToCache + kToMemory, ", serves: l2"),
                    "topology.nodes.1.serves: expected resources, found l2"},
            BadPart{with_cache(kToCache + kToMemory, ", interleave_bytes: 96"),
