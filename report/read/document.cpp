@@ -5,6 +5,7 @@
 #include <cstring>
 #include <fstream>
 #include <optional>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -93,24 +94,29 @@ void require_below(const std::string& path, const Required& required) {
   }
 }
 
-/// A configuration without what its plugins have brought. No report makes the program open a plugin: it may come from a
-/// stranger, and the plugin need not be there any more.
-Json without_plugins(Json config) {
+/// The configuration of a report without what its plugins have brought, which the report lists. No report makes the
+/// program open a plugin: it may come from a stranger, and the plugin need not be there any more.
+Json without_plugins(const Json& report) {
+  Json config = report["config"];
   const Json::json_pointer plugins("/engine/plugins"), workload("/workload/plugin");
   if (!config.contains(plugins) || config[plugins].empty()) return config;
   config["engine"].erase("plugins");
   if (config.contains(workload)) config.erase("workload");
+  std::set<std::string> names;
+  for (const Json& plugin : report.value("plugins", Json::array()))
+    for (const Json& brought : plugin["brings"]) {
+      const std::string text = brought.get<std::string>();
+      names.insert(text.substr(text.rfind(' ') + 1));
+    }
   for (const std::string& key : config::config_key_paths()) {
-    const std::vector<std::string> known = config::enum_values(key);
     const std::size_t dot = key.rfind('.');
-    if (known.empty() || dot == key.npos) continue;
+    if (dot == key.npos || config::enum_values(key).empty()) continue;
     std::string section = "/" + key.substr(0, dot);
     std::replace(section.begin(), section.end(), '.', '/');
     const Json::json_pointer at(section);
     const std::string name = key.substr(dot + 1);
     if (!config.contains(at) || !config[at].is_object() || !config[at].contains(name)) continue;
-    const Json& value = config[at][name];
-    if (value.is_string() && std::find(known.begin(), known.end(), value.get<std::string>()) == known.end())
+    if (const Json& value = config[at][name]; value.is_string() && names.contains(value.get<std::string>()))
       config[at].erase(name);
   }
   return config;
@@ -118,7 +124,7 @@ Json without_plugins(Json config) {
 
 void require_configuration(const Json& report) {
   try {
-    load_config({without_plugins(report["config"]).dump(), "config.json"}, {}, {.fields_only = true});
+    load_config({without_plugins(report).dump(), "config.json"}, {}, {.fields_only = true});
   } catch (const ConfigError& error) {
     const ConfigIssue& issue = error.issues().front();
     throw JsonFault(path_below("config", issue.key_path), issue.message);

@@ -23,7 +23,7 @@ constexpr const char* kMachine =
     "scene: {builtin: terrain, triangles: 2000}\n"
     "image: {width: 96, height: 64, samples: 2}\n"
     "engine: {kind: cycle, threads: 1, what_if: false}\n"
-    "topology: {resources: 4}\n";
+    "topology: {resources: 4}\nrays: {slots_per_resource: 128}\n";
 
 /// True if the process catches the signal by now: until then it just ends it.
 bool catches(pid_t pid, int number) {

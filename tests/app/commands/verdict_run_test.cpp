@@ -108,7 +108,7 @@ TEST_F(VerdictRun, TheIntervalOfAWholeFrameHoldsTheGainsOfOtherSeeds) {
 
 // The sky comes first and costs shading alone; with few workers it limits the machine, and then triangle tests do.
 TEST_F(VerdictRun, EachPhaseHasItsOwnVerdict) {
-  const Json report = run(kTerrain, {"engine.what_if=true", "shading.workers=2"});
+  const Json report = run(kTerrain, {"engine.what_if=true", "shading.workers=1", "shading.cycles_per_shade=45"});
   const Json& phases = report["bottleneck"]["phases"];
   ASSERT_GE(phases.size(), 2u) << report["bottleneck"].dump(1);
   EXPECT_EQ(phases.front()["limits"], "shading");

@@ -105,9 +105,12 @@ TEST(CycleLedgers, LedgersAddUp) {
       transforms += tile.units[UnitKind::kTransform].busy;
     }
     std::uint64_t hops = 0;
+    const Topology topology(cell.config.topology);
+    const std::vector<Topology::Wire>& wires = topology.wires();
     for (std::size_t l = 0; l < c.links.size(); ++l) {
       EXPECT_LE(c.links[l].use.busy + c.links[l].use.stalled, c.cycles);
-      EXPECT_LE(c.links[l].queue.most, static_cast<std::uint64_t>(cell.config.topology.link.depth));
+      const std::int64_t own = l < wires.size() ? wires[l].depth : 0;  // 0: as topology.link says
+      EXPECT_LE(c.links[l].queue.most, static_cast<std::uint64_t>(own > 0 ? own : cell.config.topology.link.depth));
       EXPECT_LE(c.links[l].queue.packet_cycles, c.links[l].queue.most * c.cycles);
       waited += c.links[l].queue.packet_cycles;
       hops += out.result.links[l].statistics.packets;
@@ -118,6 +121,7 @@ TEST(CycleLedgers, LedgersAddUp) {
       EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
       misses += cache.misses + cache.write_fetches;
     }
+    for (const AheadCounts& ahead : c.fetched_ahead) misses += ahead.fetched;
     EXPECT_EQ(misses, c.memory.lines);
     EXPECT_LE(c.memory.busy, c.cycles);
     EXPECT_LE(c.shading.busy, c.cycles * static_cast<std::uint64_t>(shader_workers(cell.config)));

@@ -45,7 +45,7 @@ void with_prefetcher(Config& c, const StridePrefetcherKeys& prefetcher) {
   c.memory.line_bytes = 256;
   c.memory.l2_kib = 16;
   c.memory.shape_buffer_kib = 1;
-  c.memory.dram_latency_cycles = 400;
+  c.memory.dram_latency_cycles = 2000;
   c.parts.of<StridePrefetcherPart>() = prefetcher;
 }
 
