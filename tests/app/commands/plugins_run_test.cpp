@@ -37,7 +37,7 @@ class Plugins : public testing::Test {
 
   Outcome run(std::vector<std::string> sets, const std::string& command = "run") {
     std::vector<std::string> arguments{command, "a.yaml"};
-    if (command == "run") arguments.emplace_back("--json");
+    if (command == "run") arguments.insert(arguments.end(), {"--json", "--force"});
     for (std::string& set : sets) arguments.insert(arguments.end(), {"--set", std::move(set)});
     return program_.run(arguments);
   }

@@ -83,11 +83,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"EmptyFileName", "scene: {file: ''}\n",
                   "test.yaml:1:15: scene.file: expected a text that is not empty, found ''"},
         BadConfig{"WorkloadName", SCENE "workload: ray\n",
-                  "test.yaml:2:11: workload: expected rays, {rays_from: FILE}, {memory_trace: FILE} or {traffic: "
-                  "{...}}, found 'ray'"},
-        BadConfig{
-            "WorkloadBoth", SCENE "workload: {rays_from: a.csv, traffic: {}}\n",
-            "test.yaml:2:11: workload: expected rays, {rays_from: FILE}, {memory_trace: FILE} or {traffic: {...}}"},
+                  "test.yaml:2:11: workload: expected rays, {rays_from: FILE}, {memory_trace: FILE}, {traffic: {...}} "
+                  "or {plugin: NAME, options: {...}}, found 'ray'"},
+        BadConfig{"WorkloadBoth", SCENE "workload: {rays_from: a.csv, traffic: {}}\n",
+                  "test.yaml:2:11: workload: expected rays, {rays_from: FILE}, {memory_trace: FILE}, {traffic: {...}} "
+                  "or {plugin: NAME, options: {...}}"},
         BadConfig{"WorkloadKey", SCENE "workload: {ray_from: a.csv, rays_from: b.csv}\n",
                   "test.yaml:2:12: workload.ray_from: unknown key; did you mean 'rays_from'?"},
         BadConfig{"Effects", SCENE "shading: {effects: 3}\n",

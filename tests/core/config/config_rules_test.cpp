@@ -40,8 +40,8 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:2:32: memory.l2_ray_ways: shapes need a way too; expected less than memory.ways = 4, "
                   "found 4"},
         BadConfig{"Shape", SCENE "topology: {shape: bus}\n",
-                  "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional or "
-                  "point_to_point"},
+                  "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional, "
+                  "point_to_point or graph"},
         BadConfig{"DistributorUnit",
                   SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 2}\n",
                   "test.yaml:3:58: topology.resources: a central machine is one unit, with testers.distributor.testers "

@@ -52,7 +52,7 @@ TEST(FramePhases, AreCutWhereAnotherClassGainsMost) {
 }
 
 TEST(FramePhases, AStretchInWhichNothingGainsHasNoClass) {
-  const auto found = phases(in_two(20, 20), {in_two(10, 19.5)});
+  const auto found = phases(in_two(20, 20), {in_two(10, 20)});
   ASSERT_EQ(found.size(), 2);
   EXPECT_EQ(found[0].best, 0);
   EXPECT_EQ(found[1].best, kNoClass);
