@@ -28,7 +28,8 @@ void describe(V& v, const RingStopsUse& r) {
   v.field("longest_ride", r.longest_ride, "cycles", "longest time from a flit's getting on until it got off");
   v.field("longest_wait", r.longest_wait, "cycles",
           "longest time that a packet, or a flit of it, that was the first at its stop waited to get on");
-  v.field("reservations", r.reservations, "", "slots or grants that stops reserved after fair_after_cycles");
+  v.field("reservations", r.reservations, "reservations",
+          "slots or grants that stops reserved after fair_after_cycles");
   v.field("starts", r.starts, "packets", "packets that got on, answers included");
 }
 

@@ -161,7 +161,8 @@ TEST(CycleRun, NamesWhatLimitsTheMachine) {
   const Program program;
   program.write("a.yaml", kConfig);
   run_into(program, "slow",
-           {"engine.what_if=true", "rays.slots_per_resource=8", "shading.workers=1", "shading.cycles_per_shade=500"});
+           {"engine.what_if=true", "rays.slots_per_resource=32", "image.width=48", "image.height=48",
+            "shading.workers=1", "shading.cycles_per_shade=500"});
   const auto report = nlohmann::json::parse(program.read("slow/report.json"));
   EXPECT_EQ(report["bottleneck"]["limits"], "shading");
   EXPECT_EQ(report["bound"]["classes"][0]["name"], "shading");

@@ -35,11 +35,12 @@ TEST(Log, NamesThePhasesWithTheirTimes) {
   EXPECT_THAT(outcome.err, testing::ContainsRegex("run: [0-9.]+ m?s, cycle engine, [0-9.]+ k rays"));
   EXPECT_THAT(outcome.err, Not(HasSubstr("debug")));
   // Of 192 paths a pilot is made only where they do more than fill the machine.
-  EXPECT_THAT(program.run({"run", "a.yaml", "--log-level", "debug", "--set", "rays.slots_per_resource=4"}).err,
-              AllOf(HasSubstr("debug: threads: "), HasSubstr("debug: memory: about "), HasSubstr("run begins"),
-                    HasSubstr("debug: machine: 2 resources, shape ring, 2 links"), HasSubstr("debug: flow: credits"),
-                    HasSubstr("deadlock impossible"), HasSubstr("debug: collections: places for "),
-                    HasSubstr("debug: traversal: "), HasSubstr("debug: search: the pilot is the whole frame")));
+  EXPECT_THAT(
+      program.run({"run", "a.yaml", "--log-level", "debug", "--out", "b", "--set", "rays.slots_per_resource=4"}).err,
+      AllOf(HasSubstr("debug: threads: "), HasSubstr("debug: memory: about "), HasSubstr("run begins"),
+            HasSubstr("debug: machine: 2 resources, shape ring, 2 links"), HasSubstr("debug: flow: credits"),
+            HasSubstr("deadlock impossible"), HasSubstr("debug: collections: places for "),
+            HasSubstr("debug: traversal: "), HasSubstr("debug: search: the pilot is the whole frame")));
 }
 
 TEST(Log, GoesToAFile) {

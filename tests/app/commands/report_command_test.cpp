@@ -56,7 +56,7 @@ TEST_F(RunPage, OfAllResultsOfAFolderAreMadeAgain) {
   const Outcome one = program_.run({"report", "out", "--out", "page.html"});
   EXPECT_EQ(one.status, 2);
   EXPECT_THAT(one.err, HasSubstr("2 results are in this folder"));
-  program_.write("empty/a.txt", "");
+  std::filesystem::create_directory(program_.folder() / "empty");
   const Outcome none = program_.run({"report", "empty"});
   EXPECT_EQ(none.status, 2);
   EXPECT_THAT(none.err, HasSubstr("sweep.json, report.json, accuracy.json or stress.json"));

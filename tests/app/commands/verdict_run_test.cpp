@@ -129,8 +129,8 @@ TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
   for (const auto& [threads, run, beside] :
        {std::tuple{"auto", "1, chosen", cores}, {"1", "1\n", 1u}, {"3", "3\n", 3u}}) {
     program_.write("a.yaml", kTerrain);
-    const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=24",
-                                          "--set", "image.height=16", "--set", std::string("engine.threads=") + threads,
+    const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=48",
+                                          "--set", "image.height=32", "--set", std::string("engine.threads=") + threads,
                                           "--force", "--log-level", "debug"});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format("threads: {}", run)));

@@ -50,9 +50,10 @@ void with_prefetcher(Config& c, const StridePrefetcherKeys& prefetcher) {
 }
 
 // Each class has a machine that it limits: relaxing it makes the run shorter. Before issue 16 some what_ifs changed
-// nothing, and many keys that cost hardware had no class. In three machines it is scarce but does not limit: more
+// nothing, and many keys that cost hardware had no class. In four machines it is scarce but does not limit: more
 // bundles are open for longer, with twice the least storage collections go out that would have filled, and vectors of
-// rays that are sorted sooner are emptier (+3, +15 and +1 %).
+// rays that are sorted sooner are emptier (+3, +15 and +1 %), and some of the lines that are fetched farther ahead are
+// not asked for (+0.03 %).
 TEST(WhatIf, EveryLiftIsNoticed) {
   const std::vector<Plant> slow{
       {"test_latency",
@@ -82,7 +83,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
       {"l1_size", [](Config& c) { c.memory.l1_kib = 2, c.memory.shape_buffer_kib = 1; }},
       {"l1_port", [](Config& c) { c.memory.l1_kib = 64, c.memory.line_bytes = 16, c.memory.shape_buffer_kib = 1; }},
       {"l1_mshrs", [](Config& c) { c.memory.l1_kib = 2, c.memory.l1_mshrs = 1; }},
-      {"prefetch", [](Config& c) { with_prefetcher(c, {.lines = 1}); }},
+      {"prefetch", [](Config& c) { with_prefetcher(c, {.lines = 1}); }, 0.001},
       {"prefetch_streams", [](Config& c) { with_prefetcher(c, {.lines = 4, .streams = 1}); }},
       {"l2_mshrs", [](Config& c) { c.memory.l2_mshrs = 1, c.memory.l2_kib = 16, c.memory.dram_latency_cycles = 2000; }},
       {"l2_port",
