@@ -29,10 +29,13 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   }
   std::string text = fmt::format("{}: {} gains {}", named->name, named->action, gain_text(*named));
   if (!b.rivals.empty()) {
+    constexpr std::size_t kShown = 3;
+    std::size_t shown = 0;
     text += "; not to be told apart from it:";
     for (const BottleneckGain& gain : b.gains)
-      if (std::find(b.rivals.begin(), b.rivals.end(), gain.name) != b.rivals.end())
-        text += fmt::format("{} {} with {}", text.back() == ':' ? "" : ",", gain.name, gain_text(gain));
+      if (shown < kShown && std::find(b.rivals.begin(), b.rivals.end(), gain.name) != b.rivals.end())
+        text += fmt::format("{} {} with {}", shown++ == 0 ? "" : ",", gain.name, gain_text(gain));
+    if (b.rivals.size() > shown) text += fmt::format(" and {} more", b.rivals.size() - shown);
     return text;
   }
   const auto next = std::find_if(b.gains.begin(), b.gains.end(),

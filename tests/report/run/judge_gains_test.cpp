@@ -37,6 +37,14 @@ TEST(JudgeGains, SaysWhichClassesItCannotTellApart) {
   EXPECT_THAT(b.verdict, HasSubstr("not to be told apart from it: boxes with +18.0 %"));
 }
 
+TEST(JudgeGains, OfManyRivalsItShowsThree) {
+  Bottleneck found;
+  for (const char* name : {"a", "b", "c", "d", "e", "f"}) found.gains.push_back(gain(name, 0.2, 0.1, 0.3));
+  const Bottleneck b = judge_gains(found);
+  EXPECT_EQ(b.rivals.size(), 5u);
+  EXPECT_THAT(b.verdict, HasSubstr("d with +20.0 % (+10.0 to +30.0 %) and 2 more"));
+}
+
 TEST(JudgeGains, AGainInsideTheNoiseMayStillBeARival) {
   const Bottleneck b = judge_gains({.gains = {gain("shading", 0.2, -0.1, 0.5), gain("boxes", 0.18, 0.12, 0.24)}});
   EXPECT_EQ(b.limits, "boxes");
