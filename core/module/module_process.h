@@ -25,8 +25,8 @@ class ModuleProcess {
 
   /// What ModuleInfo::answer of the module says to the parts of a question, put together. `take` is asked before memory
   /// for so many bytes of the answer is allocated, and may throw. Throws ModuleError where the module is missing or
-  /// refused; std::runtime_error with the reason where answer() threw, or where the process died, or took more than five
-  /// minutes, or than ten seconds of the processor and four for each MiB of the question; and Interrupted.
+  /// refused; std::runtime_error with the reason where answer() threw, or where the process died, or took more than
+  /// five minutes, or than ten seconds of the processor and four for each MiB of the question; and Interrupted.
   std::vector<unsigned char> ask(std::span<const std::string_view> question,
                                  const std::function<void(std::uint64_t bytes)>& take);
 
