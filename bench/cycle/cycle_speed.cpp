@@ -78,8 +78,8 @@ TrafficSpeed measure_traffic(const TrafficCase& one, int repetitions) {
   for (int i = 0; i < repetitions; ++i) {
     const Stopwatch stopwatch;
     const ringbus::TrafficResult result = ringbus::run_traffic(one.config, {});
-    speeds.push_back(per_second(result.flit_hops(), stopwatch.elapsed().cpu));
-    out.flit_hops = result.flit_hops();
+    speeds.push_back(per_second(result.flit_hops, stopwatch.elapsed().cpu));
+    out.flit_hops = result.flit_hops;
     out.cycles = result.cycles;
   }
   out.flit_hops_per_cpu_second = spread_of(speeds);
