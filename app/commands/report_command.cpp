@@ -50,7 +50,7 @@ std::string page_of_file(const report::Document& document, const std::filesystem
   }
 }
 
-/// What commands wrote to a folder, side by side. Throws a FileError if there is nothing.
+/// The results that commands wrote to a folder, side by side. Throws a FileError if there is nothing.
 std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> out;
   for (const char* name : {"sweep.json", "report.json", "accuracy.json", "stress.json"})

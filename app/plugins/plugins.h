@@ -12,7 +12,7 @@ namespace carousel::app {
 /// ConfigError.
 std::vector<std::string> open_plugins(const std::vector<std::string>& names);
 
-/// What the report says of the plugins in these files, which are open; absent if there are none.
+/// The section of the report about the plugins in these files, which are open; absent if there are none.
 std::optional<std::vector<report::Plugin>> plugins_section(const std::vector<std::string>& files);
 
 }  // namespace carousel::app

@@ -25,9 +25,11 @@ std::string verdict_sentence(const Json& report) {
       out += fmt::format(" (95 % of confidence, other seeds of the picture included: {:+.1f} % to {:+.1f} %)",
                          100 * low, 100 * high);
       if (const Json& rivals = (*bottleneck)["rivals"]; !rivals.empty()) {
+        constexpr std::size_t kShown = 3;
         out += "; as much may be gained with";
-        for (std::size_t i = 0; i < rivals.size(); ++i)
+        for (std::size_t i = 0; i < rivals.size() && i < kShown; ++i)
           out += (i == 0 ? " " : ", ") + words(rivals[i].get<std::string>());
+        if (rivals.size() > kShown) out += fmt::format(" and {} more", rivals.size() - kShown);
       }
       out[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[0])));
       return out + ".";

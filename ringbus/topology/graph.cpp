@@ -34,11 +34,7 @@ std::vector<TopologyPlan::Exit> exits_of(const Graph& graph, const Routes& route
     for (std::uint32_t to = 0; to < graph.resources; ++to) {
       const std::uint32_t i = routes.link(at, to);
       if (i == Routes::kNone) continue;
-      const Graph::Link& link = graph.links[i];
-      // A packet that changes to a link of another width is stored whole: its tail might be late, or wait.
-      const bool through = link.to != to && graph.nodes[link.to].drawn->forward == Forward::kHead &&
-                           graph.links[routes.link(link.to, to)].bytes_per_cycle == link.bytes_per_cycle;
-      exits[at * std::size_t{graph.resources} + to] = {ports[i], through};
+      exits[at * std::size_t{graph.resources} + to] = {ports[i], goes_through(graph, routes, i, to)};
     }
   return exits;
 }

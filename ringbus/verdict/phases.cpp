@@ -69,7 +69,7 @@ std::vector<FramePhase> frame_phases(const PilotRun& base, const std::vector<Pil
     for (std::size_t b = 0; b < kBlocks; ++b) row.push_back(times[b] - others.back()[b]);
     noise = std::max(noise, deviation_of(row));
   }
-  // What a class must save to be worth a verdict, by which none of them is better than those that save less.
+  // A row for no class: it saves what a class must save to be worth a verdict.
   std::vector<double>& none = saved.emplace_back();
   for (const double time : times) none.push_back(time * kWorthIt / (1 + kWorthIt));
   const std::vector<std::size_t> rows = best_rows(saved, std::max(3 * noise, 0.02 * all));

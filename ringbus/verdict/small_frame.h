@@ -15,9 +15,9 @@ struct SmallFrame {
 };
 
 /// A frame is too small if less than three quarters of its rays are completed between fill and drain (steady_state.h
-/// says when these are). What limits its machine is then not what limits it in a larger frame: caches are cold and
-/// slots are empty for much of the time. `paths`: that the frame begins. Absent if the frame is large enough, or if the
-/// run does not say when its last path began.
+/// says when these are). Slots are then empty for much of the time, and another part may limit the machine than in a
+/// larger frame. It does not see caches that are cold. `paths`: that the frame begins. Absent if the frame is large
+/// enough, or if the run does not say when its last path began.
 std::optional<SmallFrame> small_frame(const cycle::CycleResult& result, std::uint64_t rays, std::uint64_t paths,
                                       std::uint64_t slots);
 

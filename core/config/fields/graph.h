@@ -23,7 +23,7 @@ inline constexpr auto kEnumNames<GraphNodeKind> = [] {
                                {kPacketProcess, "packet_process"}});
 }();
 
-/// What may travel over a link.
+/// The kinds of messages that may travel over a link.
 enum class Carried { kPackets, kShapes, kNewRays, kCompletedRays };
 template <>
 inline constexpr auto kEnumNames<Carried> = [] {
@@ -232,7 +232,8 @@ void describe(V& v, GraphLink& c) {
       .relax("packets_in_flight", Better::kTwice);
   v.choices("carries", c.carries,
             "What travels over the link: packets; shapes, which are requests to caches and memory with all that they "
-            "read and write; rays from ray control and back to it. What no link carries has wires of its own.");
+            "read and write; rays from ray control and back to it. Messages of a kind that no link carries have wires "
+            "of their own.");
   v.field_or_auto("virtual_channels", c.virtual_channels, kChannels, "channels",
                   "The queues that share the link; auto is those of topology.link.");
   v.field("dateline", c.dateline, "",

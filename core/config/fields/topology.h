@@ -95,7 +95,7 @@ struct LinkConfig {
   std::int64_t virtual_channels = 1;
 };
 
-/// What is different in one resource, or in nodes of a graph.
+/// The keys that differ in one resource, or in nodes of a graph.
 struct ResourceOverride {
   static constexpr std::string_view kRequired = "";
   static constexpr std::string_view kRowPath = "";  ///< the keys of its testers are those of the whole machine

@@ -249,7 +249,7 @@ class Drawing {
   std::size_t entry_ = 0;
 };
 
-/// What is wrong with the way from one resource to another, if it is never reached.
+/// The fault of the way from one resource to another, if it is never reached.
 std::optional<GraphIssue> fault_of(const Graph& graph, const Routes& routes, std::uint32_t from, std::uint32_t to) {
   std::uint32_t at = from;
   for (std::size_t links = 0; at != to; ++links) {

@@ -44,7 +44,7 @@ bool check_node(const GraphNode& node, const std::string& key, const RuleBreach&
   return true;
 }
 
-/// What the wires of drawn parts cannot carry yet.
+/// Refuses what the wires of drawn parts cannot carry yet.
 void check_parts(const Config& config, const Graph& graph, const DrawnParts& parts, const RuleBreach& breach) {
   const bool traffic = config.workload.kind == WorkloadConfig::Kind::kTraffic;
   bool shared = false;

@@ -75,7 +75,7 @@ void skip_schema_line(config::Node& root, std::vector<ConfigIssue>& issues) {
 }
 
 /// Opens the plugins that the tree names, in the order of the list, and returns their files: their names count in what
-/// is read next. What is wrong with the list itself the reader says.
+/// is read next. The reader names the faults of the list itself.
 std::vector<std::string> open_plugins(const config::Node& root, const std::string& source,
                                       std::vector<ConfigIssue>& issues) {
   std::vector<std::string> files;

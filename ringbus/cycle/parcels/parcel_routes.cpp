@@ -44,10 +44,8 @@ void ParcelRoutes::find_exits(const ParcelPlan& plan, Carried what, const std::v
     for (std::uint32_t to = 0; to < nodes_; ++to) {
       const std::uint32_t i = routes.link(at, to);
       if (i == Routes::kNone) continue;
-      const Graph::Link& link = graph.links[i];
-      const bool through = link.to != to && graph.nodes[link.to].drawn->forward == Forward::kHead &&
-                           graph.links[routes.link(link.to, to)].bytes_per_cycle == link.bytes_per_cycle;
-      exits_[(static_cast<std::size_t>(what) * nodes_ + at) * nodes_ + to] = {ports_of[i], through};
+      exits_[(static_cast<std::size_t>(what) * nodes_ + at) * nodes_ + to] = {ports_of[i],
+                                                                              goes_through(graph, routes, i, to)};
     }
 }
 

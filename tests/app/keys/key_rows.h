@@ -4,33 +4,13 @@
 #include <vector>
 
 #include "core/costs/cost_table.h"
-#include "tests/app/keys/base_machines.h"
+#include "tests/app/keys/network_key_rows.h"
 
 namespace carousel {
-
-/// A key of the configuration and a machine on which it matters.
-struct KeyRow {
-  std::string key;
-  BaseMachine machine;
-  std::vector<std::string> sets{};    ///< that the machine has besides
-  std::vector<std::string> values{};  ///< to try; empty: all names of an enumeration, or both values of a switch
-  std::vector<std::string> with{};    ///< set together with the values, which are refused without
-};
-
-/// The links of a ring of four whose stops have no queues.
-inline std::string ring_of_slots(const std::string& key) {
-  return "[{ring: 'r[*]', both: true, stops: {rule: slots, " + key + "}}]";
-}
-inline std::string ring_of_grants(const std::string& key) {
-  return "[{ring: 'r[*]', both: true, stops: {rule: grants, " + key + "}}]";
-}
 
 /// One row, or several, for every key.
 inline std::vector<KeyRow> key_rows() {
   using enum BaseMachine;
-  const std::string stops_ring =
-      "topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]', both: true, stops: {rule: "
-      "slots}}]}";
   std::vector<KeyRow> rows{
       {"scene.file", kLayers, {}, {"other.gltf"}},
       {"scene.builtin", kTerrain},
@@ -78,114 +58,6 @@ inline std::vector<KeyRow> key_rows() {
       {"engine.transport", kNative},
       {"engine.memory_limit_mib", kNative, {}, {"1"}},
       {"engine.what_if", kTerrain},
-      {"topology.resources", kTerrain, {}, {"3"}},
-      {"topology.shape",
-       kTerrain,
-       {"topology.visit=owners"},
-       {"bidirectional", "multi_ring", "hierarchical", "point_to_point", "bus", "independent"}},
-      {"topology.shape",
-       kTerrain,
-       {"topology.shape=ring", "topology.resources=1", "testers.simd.lanes=8"},
-       {"central"}},
-      {"topology.shape",
-       kTerrain,
-       {"topology.visit=owners", "topology.nodes=[{name: r, count: 4}]", "topology.links=[{mesh: [2, 2]}]"},
-       {"graph"}},
-      {"topology.nodes",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"},
-       {"[{name: r, count: 3}]", "[{name: r, count: 4, latency_cycles: 9}]"}},
-      {"topology.links",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"},
-       {"[{ring: 'r[*]', latency_cycles: 9}]", "[{ring: 'r[*]', bytes_per_cycle: 8}]", "[{ring: 'r[*]', depth: 1}]",
-        "[{ring: 'r[*]', both: true}]", "[{mesh: [2, 2]}]"}},
-      {"topology.nodes",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..2]'}, "
-        "{name: b, kind: cache, serves: 'r[3]'}, {name: d, kind: memory}], links: [{ring: 'r[*]'}, "
-        "{from: 'r[*]', all_to: 'a[*], b', both: true, carries: [shapes]}, "
-        "{from: 'a[*], b', to: d, both: true, carries: [shapes]}]}"},
-       {"[{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..2]', interleave_bytes: 1024}, "
-        "{name: b, kind: cache, serves: 'r[3]'}, {name: d, kind: memory}]",
-        "[{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..1]'}, "
-        "{name: b, kind: cache, serves: 'r[2..3]'}, {name: d, kind: memory}]"}},
-      {"topology.links",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: l2, kind: cache}, {name: s, kind: shading}], "
-        "links: [{ring: 'r[*]'}, {from: 'r[*]', to: l2, both: true, carries: [shapes]}, "
-        "{from: 'r[*]', to: s, both: true, carries: [new_rays]}]}"},
-       {"[{ring: 'r[*]'}, {from: 'r[*]', to: l2, both: true, carries: [shapes]}, "
-        "{from: 'r[*]', to: s, both: true, carries: [new_rays, completed_rays]}]",
-        "[{ring: 'r[*]', carries: [packets, shapes]}, {line: 'r[0], l2', both: true, carries: [shapes]}, "
-        "{from: 'r[*]', to: s, both: true, carries: [new_rays]}]"}},
-      {"topology.routes",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 5}], links: [{ring: 'r[*]', both: true}]}",
-        "topology.routes=shortest"},
-       {"up_down"}},
-      {"topology.routes",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 5}], links: [{ring: 'r[*]', both: true}], "
-        "ways: [{along: 'r[0], r[4], r[3], r[2], r[1]'}]}",
-        "topology.routes=shortest"},
-       {"given"}},
-      {"topology.root",
-       kTerrain,
-       {"topology={shape: graph, routes: up_down, nodes: [{name: r, count: 5}], links: [{ring: 'r[*]', both: true}]}"},
-       {"r[2]"}},
-      {"topology.ways",
-       kTerrain,
-       {"topology={shape: graph, routes: given, nodes: [{name: r, count: 5}], links: [{ring: 'r[*]', both: true}]}"},
-       {"[{along: 'r[0], r[4], r[3], r[2], r[1]'}]",
-        "[{at: 'r[3]', to: 'r[0]', next: 'r[2]'}, {at: 'r[2]', to: 'r[0]', next: 'r[1]'}]"}},
-      {"topology.tour",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[0], r[2], r[1], r[3]', both: true}]}",
-        "topology.tour=names"},
-       {"nearest"}},
-      {"topology.link.virtual_channels",
-       kTraffic,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{line: 'r[*]', both: true}]}",
-        "workload.traffic.rate=0.8"},
-       {"4"}},
-      {"topology.channels",
-       kTraffic,
-       {"topology={shape: graph, link: {virtual_channels: 4}, nodes: [{name: r, count: 4}], links: [{line: 'r[*]', "
-        "both: true}]}",
-        "topology.channels=any", "workload.traffic.rate=0.8"},
-       {"hops"}},
-      {"topology.channels",
-       kTraffic,
-       {"topology={shape: graph, link: {virtual_channels: 4}, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]', "
-        "both: true}]}",
-        "topology.channels=hops", "workload.traffic.rate=0.8"},
-       {"dateline"}},
-      {"topology.links",
-       kTraffic,
-       {stops_ring, "workload.traffic.packet_bytes=128", "workload.traffic.rate=0.9"},
-       {ring_of_slots("rings: 2"), ring_of_slots("port_bytes_per_cycle: 8"), ring_of_slots("fair_after_cycles: 1"),
-        ring_of_grants("grant_cycles: 1"), ring_of_grants("grant_cycles: 40"), ring_of_grants("command_cycles: 9"),
-        ring_of_grants("start_cycles: 99"), ring_of_grants("transfers: 1")}},
-      {"topology.rings", kTerrain, {"topology.shape=multi_ring"}, {"3"}},
-      {"topology.groups",
-       kTraffic,
-       {"topology={shape: hierarchical, resources: 8, link: {virtual_channels: 4}, channels: dateline}"},
-       {"2"}},
-      {"topology.groups", kTerrain, {"topology.shape=hierarchical"}, {"2"}},
-      {"topology.form", kTerrain, {"topology.shape=central", "topology.resources=1", "testers.contexts=4"}},
-      {"topology.visit", kTerrain},
-      {"topology.flow", kTerrain, {"topology.link.depth=2"}},
-      {"topology.link.queue", kNative},
-      {"topology.link.depth", kTerrain, {}, {"1"}},
-      {"topology.link.latency_cycles", kTerrain, {}, {"9"}},
-      {"topology.link.bytes_per_cycle", kTerrain, {}, {"8"}},
-      {"topology.overrides", kTerrain, {}, {"[{resource: 1, testers: {box: {units: 1, interval_cycles: 9}}}]"}},
-      {"topology.overrides",
-       kTerrain,
-       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"},
-       {"[{nodes: 'r[1..2]', testers: {box: {units: 1, interval_cycles: 9}}}]",
-        "[{nodes: 'r[1..2]', shape_buffer_kib: 4}]"}},
       {"rays.slots_per_resource", kTerrain, {}, {"8"}},
       {"rays.placement", kNative},
       {"rays.placement", kTerrain},
@@ -444,11 +316,13 @@ inline std::vector<KeyRow> key_rows() {
       {"workload.traffic.hotspot", kTraffic, {"workload.traffic.pattern=hotspot"}, {"1"}},
       {"workload.traffic.hotspot_fraction", kTraffic, {"workload.traffic.pattern=hotspot"}, {"0.9"}},
       {"workload.traffic.burst_packets", kTraffic, {"workload.traffic.pattern=bursty"}, {"2"}},
-      {"workload.traffic.sources", kTraffic, {stops_ring}, {"r[0]"}},
-      {"workload.traffic.destinations", kTraffic, {stops_ring}, {"r[2]"}},
-      {"workload.traffic.reply_bytes", kTraffic, {stops_ring}, {"64"}},
-      {"workload.traffic.serve_cycles", kTraffic, {stops_ring, "workload.traffic.reply_bytes=32"}, {"9"}},
+      {"workload.traffic.sources", kTraffic, {kStopsRing}, {"r[0]"}},
+      {"workload.traffic.destinations", kTraffic, {kStopsRing}, {"r[2]"}},
+      {"workload.traffic.reply_bytes", kTraffic, {kStopsRing}, {"64"}},
+      {"workload.traffic.serve_cycles", kTraffic, {kStopsRing, "workload.traffic.reply_bytes=32"}, {"9"}},
   };
+  const std::vector<KeyRow> network = network_key_rows();
+  rows.insert(rows.end(), network.begin(), network.end());
   for (const CostRow& row : kCostTable)
     rows.push_back(
         {std::string(row.section) + "." + std::string(row.key), kTerrain, {"energy.profile=n45"}, {"12345"}});
