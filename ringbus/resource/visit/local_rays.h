@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -18,20 +19,26 @@ struct LocalRays {
   bool empty() const { return slots.empty(); }
 
   void gather(const Packet& packet, const RayStore& store) {
-    slots.resize(packet.members.size());
-    members.resize(packet.members.size());
+    const std::size_t n = packet.members.size();
+    if (found_.size() < 2 * n) found_.resize(2 * n);
+    std::uint32_t* const slot_of = found_.data();
+    std::uint32_t* const member_of = slot_of + n;
     std::size_t count = 0;
-    for (std::uint32_t i = 0; i < packet.members.size(); ++i) {
+    for (std::uint32_t i = 0; i < n; ++i) {
       const RayId ray = packet.members[i].ray;
       const bool local = store.owns(ray);
       // Every member is written, and counted if it is local: with two owners no branch predictor guesses which.
-      slots[count] = local ? store.slot(ray) : 0;
-      members[count] = i;
+      slot_of[count] = local ? store.slot(ray) : 0;
+      member_of[count] = i;
       count += local;
     }
-    slots.resize(count);
-    members.resize(count);
+    slots.assign(slot_of, slot_of + count);
+    members.assign(member_of, member_of + count);
   }
+
+ private:
+  // Both lists with room for all members. The lists themselves would be filled with zeros each time they grow.
+  std::vector<std::uint32_t> found_;
 };
 
 }  // namespace carousel::ringbus
