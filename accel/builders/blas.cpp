@@ -7,34 +7,11 @@
 #include "accel/builders/binary/reference_build.h"
 #include "accel/builders/binary/reinsertion.h"
 #include "accel/builders/binary/sah_build.h"
-#include "accel/structure/sphere.h"
+#include "accel/builders/primitive_blocks.h"
 
 namespace carousel::accel {
 
 namespace {
-
-/// Triangles, then spheres, with their boxes.
-BuildPrimitives boxes(const BlasMeshes& meshes, const MeshPiece* piece, Executor& executor) {
-  const std::size_t triangles = meshes.triangles();
-  BuildPrimitives out(piece != nullptr ? piece->size() : meshes.size());
-  executor.parallel_for(out.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t at = begin; at < end; ++at) {
-      const std::size_t i = piece != nullptr ? (*piece)[at] : at;
-      Aabb box;
-      if (i < triangles) {
-        const auto [mesh, index] = meshes.triangle(static_cast<std::uint32_t>(i));
-        for (std::size_t k = 0; k < 3; ++k) box.extend(mesh->positions[mesh->indices[3 * std::size_t{index} + k]]);
-      } else {
-        const scene::Sphere& sphere = meshes.front().spheres[i - triangles];
-        box = sphere_box(sphere.center, sphere.radius);
-      }
-      out[at].lo = box.lo;
-      out[at].hi = box.hi;
-      out[at].index = static_cast<std::uint32_t>(i);
-    }
-  });
-  return out;
-}
 
 /// Their numbers; the primitives' memory is given back, since what is built next needs as much.
 std::vector<std::uint32_t> order_of(BuildPrimitives primitives, Executor& executor) {
@@ -43,32 +20,6 @@ std::vector<std::uint32_t> order_of(BuildPrimitives primitives, Executor& execut
     for (std::size_t i = begin; i < end; ++i) order[i] = primitives[i].index;
   });
   return order;
-}
-
-/// True if some of the primitives may be non-opaque.
-bool fill_block(const BlasMeshes& meshes, const scene::Opacity& opacity, const std::uint32_t* primitives,
-                std::uint32_t count, TriangleBlock& block) {
-  bool some = false;
-  for (std::uint32_t lane = 0; lane < count; ++lane) {
-    const std::uint32_t number = primitives[lane];
-    const auto set = [&](std::size_t vertex, const Vec3& p) {
-      for (int axis = 0; axis < 3; ++axis) block.vertex[vertex][axis][lane] = p[axis];
-    };
-    bool calls_any_hit;
-    if (number >= meshes.triangles()) {
-      const scene::Sphere& sphere = meshes.front().spheres[number - meshes.triangles()];
-      set(0, sphere.center);
-      block.vertex[1][0][lane] = sphere.radius;
-      calls_any_hit = opacity.may_be_non_opaque(sphere);
-    } else {
-      const auto [mesh, index] = meshes.triangle(number);
-      for (std::size_t k = 0; k < 3; ++k) set(k, mesh->positions[mesh->indices[3 * std::size_t{index} + k]]);
-      calls_any_hit = opacity.may_be_non_opaque(*mesh, index);
-    }
-    block.primitive[lane] = number | (calls_any_hit ? kNonOpaqueBit : 0);
-    some |= calls_any_hit;
-  }
-  return some;
 }
 
 BinaryTree build_tree(BuildPrimitives& primitives, const BvhConfig& config, const SahSettings& settings,
@@ -118,7 +69,7 @@ BinaryTree build_both(BuildPrimitives& primitives, std::size_t triangles, const 
 Blas build_blas(const BlasMeshes& meshes, const scene::Opacity& opacity, const BvhConfig& config, Executor& executor,
                 const MeshPiece* piece) {
   Blas blas;
-  BuildPrimitives primitives = boxes(meshes, piece, executor);
+  BuildPrimitives primitives = primitive_boxes(meshes, executor, piece);
   if (primitives.empty()) return blas;
   const auto first_sphere = std::find_if(primitives.begin(), primitives.end(),
                                          [&](const BuildPrimitive& p) { return p.index >= meshes.triangles(); });

@@ -11,6 +11,7 @@
 #include "accel/builders/blas_meshes.h"
 #include "accel/builders/bounding_oriented_boxes.h"
 #include "accel/builders/bounding_spheres.h"
+#include "accel/builders/file/file_blas.h"
 #include "accel/builders/group_levels.h"
 #include "accel/builders/placed_blas.h"
 #include "accel/builders/quantised_boxes.h"
@@ -29,8 +30,8 @@ constexpr std::size_t kGuestNumbers = 1 << 24;  // for shapes of other ranks: so
 class AccelBuilder {
  public:
   AccelBuilder(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
-               const CullPlanesConfig& planes, const BuildRanks* ranks)
-      : scene_(scene), config_(config), executor_(executor), planes_(planes), ranks_(ranks) {
+               const CullPlanesConfig& planes, const BuildRanks* ranks, const TreeFile* trees)
+      : scene_(scene), config_(config), executor_(executor), planes_(planes), ranks_(ranks), trees_(trees) {
     accel_.width = static_cast<int>(config.width);
     accel_.accuracy = accuracy;
   }
@@ -67,6 +68,7 @@ class AccelBuilder {
   // Which BLAS each instance uses: its mesh's, the merged one, or one of its own when it must be baked.
   void place_instances() {
     if (config_.merge == BvhConfig::Merge::kWorld) accel_.merged = merge_meshes(scene_, sources_);
+    names_.assign(sources_.size(), {TreeSource::Kind::kMerged, 0});
     accel_.instances.resize(scene_.instances.size());
     blas_of_.resize(scene_.instances.size());
     std::vector<std::optional<std::uint32_t>> blas_of_mesh(scene_.meshes.size());
@@ -79,6 +81,7 @@ class AccelBuilder {
         if (!shared) {
           shared = static_cast<std::uint32_t>(sources_.size());
           sources_.emplace_back(mesh);
+          names_.push_back({TreeSource::Kind::kMesh, instance.mesh.value});
         }
         blas_of_[i] = *shared;
         accel_.promoted_instances += accel_.instances[i].transform.promoted;
@@ -90,6 +93,7 @@ class AccelBuilder {
         baked_.emplace(i, bake(mesh, instance.world_from_model));
         blas_of_[i] = static_cast<std::uint32_t>(sources_.size());
         sources_.emplace_back(baked_.at(i));
+        names_.push_back({TreeSource::Kind::kInstance, static_cast<std::uint32_t>(i)});
         ++accel_.baked_instances;
       }
     }
@@ -102,8 +106,7 @@ class AccelBuilder {
       for (std::size_t i = begin; i < end; ++i) {
         PlacedBlas& placed = blases_[i];
         if (here(i)) {
-          placed.blas = build_blas(sources_[placed.source], opacity, config_, executor_,
-                                   placed.piece.empty() ? nullptr : &placed.piece);
+          placed.blas = blas(placed, opacity);
           placed.nodes = static_cast<std::uint32_t>(placed.blas.nodes.size());
           placed.blocks = static_cast<std::uint32_t>(placed.blas.blocks.size());
         }
@@ -111,6 +114,13 @@ class AccelBuilder {
       }
     });
     if (ranks_ != nullptr) exchange_summaries(*ranks_, home_, blases_);
+  }
+
+  Blas blas(const PlacedBlas& placed, const scene::Opacity& opacity) const {
+    const BlasMeshes& source = sources_[placed.source];
+    if (trees_ != nullptr && source.size() > 0)
+      return blas_of_file(trees_->of(names_[placed.source]), trees_->name, source, opacity, config_, executor_);
+    return build_blas(source, opacity, config_, executor_, placed.piece.empty() ? nullptr : &placed.piece);
   }
 
   bool here(std::size_t i) const { return ranks_ == nullptr || home_[i] == ranks_->rank; }
@@ -302,8 +312,10 @@ class AccelBuilder {
   Executor& executor_;
   const CullPlanesConfig& planes_;
   const BuildRanks* ranks_;  // null: the whole structure is built here
+  const TreeFile* trees_;    // null: the structures over meshes are built here
   Accel accel_;
   std::vector<BlasMeshes> sources_;           // the merged meshes, one a mesh, and those that are baked
+  std::vector<TreeSource> names_;             // as sources_
   std::map<std::size_t, scene::Mesh> baked_;  // by instance
   std::vector<std::uint32_t> blas_of_;        // one an instance, in sources_
   std::vector<std::uint32_t> home_;           // with ranks_: the rank of each BLAS
@@ -317,8 +329,8 @@ class AccelBuilder {
 }  // namespace
 
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
-            const CullPlanesConfig& planes, const BuildRanks* ranks) {
-  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes, ranks).run();
+            const CullPlanesConfig& planes, const BuildRanks* ranks, const TreeFile* trees) {
+  Accel accel = AccelBuilder(scene, config, executor, accuracy, planes, ranks, trees).run();
   if (config.storage == BvhConfig::Storage::kQuantised) quantise_boxes(accel);
   return accel;
 }

@@ -14,6 +14,9 @@ void add_run(CLI::App& program, RunArguments& r) {
   run->add_option("--dump-rays", r.dump_rays,
                   "Write all rays as CSV, which workload: {rays_from: FILE} reads (default: not written)")
       ->type_name("FILE");
+  run->add_option("--dump-trees", r.dump_trees,
+                  "Write the trees over the meshes, which bvh.file reads (default: not written)")
+      ->type_name("FILE");
   run->add_option("--dump-memory", r.dump_memory,
                   "Write the requests to the simulated memory as CSV, which workload: {memory_trace: FILE} reads "
                   "(default: not written)")

@@ -254,6 +254,10 @@ int accuracy_command(const AccuracyArguments& arguments) {
   if (!output) open_output(p);
   if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
     throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
+  if (!p.config().bvh.file.empty())
+    throw ConfigError({{p.located.positions.find("bvh.file"), "bvh.file",
+                        "accuracy builds the structure at each level of accuracy; expected a configuration without "
+                        "trees of a file"}});
   const report::Accuracy accuracy = Trial(p, arguments, interrupt).run();
   const nlohmann::ordered_json result = report::accuracy_json(accuracy);
   const std::string json = report::sealed(result).dump(2) + "\n";

@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "accel/builders/file/write_trees.h"
 #include "app/build_report/build_report.h"
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
@@ -80,6 +81,7 @@ void require_no_hits(const RunArguments& arguments, std::string_view workload) {
   };
   refuse(arguments.hits, "--hits");
   refuse(!arguments.dump_rays.empty(), "--dump-rays");
+  refuse(!arguments.dump_trees.empty(), "--dump-trees");
   refuse(!arguments.dump_memory.empty(), "--dump-memory");
   refuse(!arguments.trace.file.empty(), "--trace");
 }
@@ -106,6 +108,7 @@ void require_one_rank(const RunArguments& arguments) {
   };
   refuse(arguments.hits, "--hits");
   refuse(!arguments.dump_rays.empty(), "--dump-rays");
+  refuse(!arguments.dump_trees.empty(), "--dump-trees");
 }
 
 /// Tells what two ranks note for a timeline apart.
@@ -175,8 +178,9 @@ int run_command(const RunArguments& arguments) {
           require_one_rank(arguments);
           ranks.emplace(config, program_identity());
           ranks->require_same("--trace", trace_text(arguments.trace));
-          ranks->require_files(
-              [&] { return ContentDigests(of.config_folder).of(config.engine, config.scene, config.workload); });
+          ranks->require_files([&] {
+            return ContentDigests(of.config_folder).of(config.engine, config.scene, config.bvh, config.workload);
+          });
           if (ranks->rank() != 0) return;  // one writes the files
         }
         outputs.emplace(arguments, of.absolute_config());
@@ -189,6 +193,9 @@ int run_command(const RunArguments& arguments) {
   if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *outputs);
   require_memory(arguments, p.config());
   require_estimates(arguments, p.config());
+  if (outputs)
+    if (ExtraFile* const file = outputs->trees())
+      file->write([&](AtomicFile& to) { accel::write_trees(to, p.accel, p.scene); });
 
   RenderJob job(p);
   if (ranks) {

@@ -48,6 +48,7 @@ RunOutputs::RunOutputs(const RunArguments& arguments, const Config& config)
   std::vector<Named> files;
   for (const Named& named : {Named{"--trace", arguments.trace.file, &trace_},
                              {"--dump-rays", arguments.dump_rays, &rays_},
+                             {"--dump-trees", arguments.dump_trees, &trees_},
                              {"--dump-memory", arguments.dump_memory, &memory_}})
     if (!named.file.empty()) files.push_back(named);
   require_own_files(files, folder_);
@@ -55,12 +56,12 @@ RunOutputs::RunOutputs(const RunArguments& arguments, const Config& config)
 }
 
 void RunOutputs::publish_extras() {
-  for (std::optional<ExtraFile>* extra : {&trace_, &rays_, &memory_})
+  for (std::optional<ExtraFile>* extra : {&trace_, &rays_, &trees_, &memory_})
     if (*extra) (*extra)->publish();
 }
 
 int RunOutputs::tell_errors(int status) const {
-  for (const std::optional<ExtraFile>* extra : {&trace_, &rays_, &memory_}) {
+  for (const std::optional<ExtraFile>* extra : {&trace_, &rays_, &trees_, &memory_}) {
     if (!*extra || (*extra)->error().empty()) continue;
     spdlog::error("{}", (*extra)->error());
     if (status == kDone) status = kUsage;

@@ -20,6 +20,7 @@ class RunOutputs {
   /// Null if the option is not given.
   ExtraFile* trace() { return trace_ ? &*trace_ : nullptr; }
   ExtraFile* rays() { return rays_ ? &*rays_ : nullptr; }
+  ExtraFile* trees() { return trees_ ? &*trees_ : nullptr; }
   ExtraFile* memory() { return memory_ ? &*memory_ : nullptr; }
 
   /// Gives the files of options their names.
@@ -29,7 +30,7 @@ class RunOutputs {
 
  private:
   OutputFolder folder_;
-  std::optional<ExtraFile> trace_, rays_, memory_;
+  std::optional<ExtraFile> trace_, rays_, trees_, memory_;
 };
 
 }  // namespace carousel::app

@@ -47,20 +47,25 @@ auto with_positions(const KeyPositions& positions, const Body& body) {
   }
 }
 
-/// Refuses a list of rays or of memory requests that is not there, before the scene is loaded.
-void require_list(const Prepared& p) {
-  const WorkloadConfig& workload = p.config().workload;
-  const bool trace = workload.kind == WorkloadConfig::Kind::kMemoryTrace;
-  if (!trace && workload.kind != WorkloadConfig::Kind::kRaysFrom) return;
-  const std::string& name = trace ? workload.memory_trace : workload.rays_from;
+/// Refuses a file that a key names and that is not there. `holds`: what it is of.
+void require_file(const Prepared& p, const std::string& key, const std::string& name, const char* holds) {
   const std::filesystem::path path = find_beside(p.config_folder, name);
   std::error_code ignored;
   if (std::filesystem::exists(path, ignored) && !std::filesystem::is_directory(path, ignored)) return;
-  const std::string key = trace ? "workload.memory_trace" : "workload.rays_from";
   throw ConfigError({{p.located.positions.find(key), key,
                       fmt::format("expected a file of {} beside the configuration or in the working directory, "
                                   "found '{}', which is not there",
-                                  trace ? "memory requests" : "rays", name)}});
+                                  holds, name)}});
+}
+
+/// Refuses a missing list of rays or of memory requests, and missing trees, before the scene is loaded.
+void require_files(const Prepared& p) {
+  const WorkloadConfig& workload = p.config().workload;
+  if (workload.kind == WorkloadConfig::Kind::kMemoryTrace)
+    require_file(p, "workload.memory_trace", workload.memory_trace, "memory requests");
+  if (workload.kind == WorkloadConfig::Kind::kRaysFrom)
+    require_file(p, "workload.rays_from", workload.rays_from, "rays");
+  if (p.has_rays() && !p.config().bvh.file.empty()) require_file(p, "bvh.file", p.config().bvh.file, "trees");
 }
 
 /// Says what the scene came to, and what was made up for it.
@@ -147,7 +152,11 @@ void build_accel(Prepared& p, ringbus::Transport* transport) {
     Phase phase("build");
     const accel::BuildRanks ranks = build_ranks(transport);
     const bool parts = transport != nullptr && p.config().scene.placement == ScenePlacement::kPartitioned;
-    p.accel = accel::build(p.scene, p.config().bvh, *executor, p.config().accuracy, {}, parts ? &ranks : nullptr);
+    const BvhConfig& bvh = p.config().bvh;
+    std::optional<accel::TreeFile> trees;
+    if (!bvh.file.empty()) trees = accel::read_trees(find_beside(p.config_folder, bvh.file));
+    p.accel = accel::build(p.scene, bvh, *executor, p.config().accuracy, {}, parts ? &ranks : nullptr,
+                           trees ? &*trees : nullptr);
     p.build_seconds = phase.seconds();
     if (parts) p.structure = whole_structure(accel::structure_size(p.accel), *transport);
     phase.result(fmt::format("{}, {} nodes; kernels {}", report::bytes_text(p.accel.size_bytes()), p.accel.nodes.size(),
@@ -253,7 +262,7 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
   choose_threads(p);
   limit_memory(p);
   const KeyPositions& positions = p.located.positions;
-  require_list(p);
+  require_files(p);
   if (!p.has_rays()) return;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
@@ -275,7 +284,7 @@ scene::View view_of(const Config& config) {
 Config Prepared::absolute_config() const {
   Config out = config();
   std::string* map = out.scene.sky ? &out.scene.sky->file : nullptr;
-  for (std::string* name : {&out.scene.file, map, &out.workload.rays_from, &out.workload.memory_trace}) {
+  for (std::string* name : {&out.scene.file, map, &out.bvh.file, &out.workload.rays_from, &out.workload.memory_trace}) {
     if (name == nullptr || name->empty()) continue;
     std::error_code ignored;
     const std::string path = std::filesystem::absolute(find_beside(config_folder, *name), ignored).string();

@@ -182,6 +182,8 @@ inline constexpr Condition kBlocks{[](const C& c, const S&) { return c.collectio
                                    "rays gather at nodes"};
 inline constexpr Condition kWaits{[](const C& c, const S&) { return c.collections.partial == Partial::kAfter; },
                                   "collections.partial is not after"};
+inline constexpr Condition kBuiltHere{[](const C& c, const S&) { return c.bvh.file.empty(); },
+                                      "bvh.file has the trees"};
 inline constexpr Condition kSpaceIsCut{[](const C& c, const S&) { return c.bvh.builder != BvhConfig::Builder::kSah; },
                                        "bvh.builder: sah cuts no triangles"};
 

@@ -113,13 +113,15 @@ const std::string& ContentDigests::of_scene(const std::string& name) {
   return digest = bytes_digest(all);
 }
 
-std::string ContentDigests::of(const EngineConfig& engine, const SceneConfig& scene, const WorkloadConfig& workload) {
+std::string ContentDigests::of(const EngineConfig& engine, const SceneConfig& scene, const BvhConfig& bvh,
+                               const WorkloadConfig& workload) {
   std::string out;
   for (const std::string& plugin : engine.plugins) out += of_file(plugin);
   if (workload.kind == WorkloadConfig::Kind::kTraffic) return out;
   if (workload.kind == WorkloadConfig::Kind::kMemoryTrace) return out + of_file(workload.memory_trace);
   if (!scene.file.empty()) out += of_scene(scene.file);
   if (scene.sky && !scene.sky->file.empty()) out += of_file(scene.sky->file);
+  if (!bvh.file.empty()) out += of_file(bvh.file);
   if (workload.kind == WorkloadConfig::Kind::kRaysFrom) out += of_file(workload.rays_from);
   return out;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "core/config/fields/bvh.h"
 #include "core/config/fields/engine.h"
 #include "core/config/fields/scene.h"
 #include "core/config/fields/workload.h"
@@ -19,9 +20,10 @@ class ContentDigests {
   explicit ContentDigests(std::filesystem::path config_folder, bool read_again = false)
       : folder_(std::move(config_folder)), read_again_(read_again) {}
 
-  /// The digest of the plugins, the scene's file, the files that it names, and a list of rays; empty if the
+  /// The digest of the plugins, the scene's file, the files that it names, trees, and a list of rays; empty if the
   /// configuration names none. Throws FileError for files that cannot be read.
-  std::string of(const EngineConfig& engine, const SceneConfig& scene, const WorkloadConfig& workload);
+  std::string of(const EngineConfig& engine, const SceneConfig& scene, const BvhConfig& bvh,
+                 const WorkloadConfig& workload);
 
  private:
   const std::string& of_file(const std::string& name);

@@ -86,7 +86,7 @@ SweepPoint PointMaker::make(const Choice& choice) {
   const nlohmann::ordered_json all{
       {"program", program_},
       {"config", config},
-      {"files", content_.of(located.config.engine, located.config.scene, located.config.workload)}};
+      {"files", content_.of(located.config.engine, located.config.scene, located.config.bvh, located.config.workload)}};
   point.digest = bytes_digest(all.dump());
   return point;
 }

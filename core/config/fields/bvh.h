@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
@@ -21,6 +22,7 @@ struct BvhConfig {
   double duplicates = 0.3;
   enum class Merge { kNone, kWorld } merge = Merge::kNone;
   enum class Quality { kFast, kHigh } quality = Quality::kFast;
+  std::string file;  ///< of trees; empty: they are built here
 };
 
 template <>
@@ -103,6 +105,9 @@ void describe(V& v, BvhConfig& c) {
       "quality", c.quality,
       "Meshes are divided once, from the top; or subtrees are then moved to where the areas of all boxes add up to "
       "less, which takes several times as long to build, and less to traverse where triangles are long.");
+  v.field("file", c.file, "",
+          "A file of trees over the meshes, which takes the place of building them (docs/builders.md). Its path is "
+          "relative as that of scene.file is. The top level is built as ever.");
 }
 
 }  // namespace config

@@ -31,6 +31,8 @@ void check_placement(const Config& config, const RuleBreach& breach) {
   refuse(
       config.bvh.storage != BvhConfig::Storage::kFull, "bvh.storage",
       fmt::format("pieces of boxes are not partitioned yet; expected full, found {}", enum_name(config.bvh.storage)));
+  refuse(!config.bvh.file.empty(), "bvh.file",
+         fmt::format("trees of a file are not partitioned yet; expected no file, found {}", config.bvh.file));
   refuse(config.bvh.merge != BvhConfig::Merge::kNone, "bvh.merge",
          fmt::format("merged meshes are not partitioned yet; expected none, found {}", enum_name(config.bvh.merge)));
   refuse(config.bvh.levels > 2, "bvh.levels",

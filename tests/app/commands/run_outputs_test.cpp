@@ -135,7 +135,7 @@ TEST_F(RunOutputs, ARunOfAnotherHostIsLeftAlone) {
 }
 
 TEST_F(RunOutputs, AFullDiskForAFileOfAnOptionCostsNoResult) {
-  for (const char* option : {"--trace", "--dump-rays", "--dump-memory", "--log-file"}) {
+  for (const char* option : {"--trace", "--dump-rays", "--dump-trees", "--dump-memory", "--log-file"}) {
     fs::remove_all(here("o"));
     const Outcome outcome = run({option, "/dev/full", "--hits"});
     EXPECT_EQ(outcome.status, 2) << option;
@@ -148,7 +148,7 @@ TEST_F(RunOutputs, AFullDiskForAFileOfAnOptionCostsNoResult) {
 
 TEST_F(RunOutputs, AreTriedBeforeTheRunAndAreFilesOfTheirOwn) {
   program_.write("file", "");
-  for (const char* option : {"--trace", "--dump-rays", "--dump-memory"}) {
+  for (const char* option : {"--trace", "--dump-rays", "--dump-trees", "--dump-memory"}) {
     const Outcome outcome = run({option, "file/x", "--set", "scene={file: missing.glb}"});
     EXPECT_EQ(outcome.status, 2);
     EXPECT_THAT(outcome.err, HasSubstr(std::string("error: ") + option + ": cannot write file/x: Not a directory"));

@@ -71,6 +71,9 @@ void write_scenes_and_rays(const Program& program) {
   program.write("map.hdr", hdr_file(8, 4, [](int x, int y) { return Vec3{float(x), float(y), 1}; }));
   program.write("copies.csv", rays_to_edges(60));
   program.write("fewer.csv", rays_to_edges(30));
+  program.write("trees.yaml",
+                "scene: {builtin: cornell}\nimage: {width: 2, height: 2, samples: 1}\nbvh: {leaf_triangles: 1}\n");
+  program.run({"run", "trees.yaml", "--dump-trees", "small_leaves.trees", "--no-html", "--quiet"});
 }
 
 }  // namespace carousel

@@ -105,6 +105,7 @@ inline std::vector<KeyRow> key_rows() {
       {"bvh.builder", kCornell},
       {"bvh.merge", kTerrain, {"scene.builtin=spheres"}},
       {"bvh.quality", kCornell},
+      {"bvh.file", kCornell, {}, {"small_leaves.trees"}},
       {"bvh.duplicates", kTerrain, {"bvh.builder=kd"}, {"2"}},
       {"accuracy.triangle", kInstances},
       {"accuracy.box", kCornell},
