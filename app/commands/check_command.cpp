@@ -70,7 +70,7 @@ std::string graph_yaml(const TopologyConfig& config, const KeyPositions& positio
   std::string out;
   if (!drawn.same) out += fmt::format("# Not the same machine: {}.\n", drawn.difference);
   out += fmt::format("topology:\n  shape: graph\n  visit: {}\n", yaml_line(topology["visit"]));
-  for (const char* key : {"flow", "overrides", "routes", "root", "ways", "tour", "channels"})
+  for (const char* key : {"form", "flow", "overrides", "routes", "root", "ways", "tour", "channels"})
     if (topology.contains(key) && (!defaults.contains(key) || topology[key] != defaults[key]))
       out += fmt::format("  {}: {}\n", key, yaml_line(topology[key]));
   if (const Json link = short_form(topology["link"], defaults["link"]); !link.empty())
@@ -83,15 +83,15 @@ std::string graph_yaml(const TopologyConfig& config, const KeyPositions& positio
 /// The ways of a graph under uniform traffic.
 std::string graph_facts_text(const TopologyConfig& config) {
   const ringbus::GraphFacts facts = ringbus::graph_facts(config);
-  std::string out = fmt::format("graph: {} resources, {} routers, {} links of one way\n", facts.resources,
-                                facts.routers, facts.links);
+  std::string out = fmt::format("graph: {} resources, {}, {} links of one way\n", facts.resources,
+                                facts.bus.empty() ? fmt::format("{} routers", facts.routers) : "a bus", facts.links);
   if (facts.links == 0) return out;
   out += fmt::format(
       "ways: {:.4f} cycles and {:.4f} nodes on average, {} cycles at most, from {} to {}; {} links at "
       "most\n",
       facts.mean_cycles, facts.mean_nodes, facts.longest_cycles, facts.longest_from, facts.longest_to, facts.diameter);
   out += fmt::format("busiest: {}, on {} of {} ways; a uniform load fills it at {:.4f} flits a resource and cycle\n",
-                     facts.busiest, facts.busiest_pairs, facts.resources * facts.resources, facts.bound);
+                     facts.busiest, facts.busiest_pairs, facts.ways, facts.bound);
   if (facts.resources > 1)
     out += fmt::format("halves: {} bytes a cycle there and back, {} ({})\n", facts.halves.bytes_per_cycle,
                        facts.halves.exact ? "the narrowest of all cuts" : "the narrowest cut that a search found",

@@ -79,12 +79,12 @@ struct Config {
 
 /// A central machine of test cells, each of which tests the rays of its places in ray memory.
 inline bool has_cells(const Config& c) {
-  return c.topology.shape == TopologyShape::kCentral && c.topology.form == CentralForm::kCells;
+  return is_central(c.topology) && c.topology.form == CentralForm::kCells;
 }
 
 /// A central machine with a distributor in front of testers.
 inline bool has_distributor(const Config& c) {
-  return c.topology.shape == TopologyShape::kCentral && c.topology.form == CentralForm::kDistributor;
+  return is_central(c.topology) && c.topology.form == CentralForm::kDistributor;
 }
 
 /// Testers of a resource that have units, and a share of its ray memory, of their own.

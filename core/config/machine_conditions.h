@@ -160,7 +160,7 @@ inline constexpr Condition kChannels{
              (c.topology.shape == TopologyShape::kGraph || c.topology.shape == TopologyShape::kHierarchical);
     },
     "virtual channels carry synthetic traffic on graphs"};
-inline constexpr Condition kCentral{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kCentral; },
+inline constexpr Condition kCentral{[](const C& c, const S&) { return is_central(c.topology); },
                                     "the topology is not central"};
 inline constexpr Condition kDistributor{[](const C& c, const S&) { return has_distributor(c); },
                                         "the machine has no distributor"};

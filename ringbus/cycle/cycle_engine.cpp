@@ -248,7 +248,7 @@ class CycleRun {
   /// The links are as many media side by side; a bus is one, to which the links of the resources lead: what one of them
   /// brings crosses it once, whoever hears it.
   ClassUse link_use() const {
-    const bool bus = config_.topology.shape == TopologyShape::kBus;
+    const bool bus = is_bus(config_.topology);
     ClassUse out{"link_bandwidth", bus ? 1.0 : static_cast<double>(machine_.shared().topology.wires().size()), 0};
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
       if (!bus || wire.from.value < machine_.resources().size()) out.busy += machine_.out_of(wire.from)[port].busy();

@@ -157,8 +157,7 @@ bool NativePort::may_take_in(PacketId id) const {
   const Packet& packet = machine_.packet(id);
   const bool passing = stops_.passes(id);
   if (!passing && packet.owner == resource_.id()) return true;
-  return out_ports_[passing ? stops_.port(machine_.topology, id) : logic_.out_port(packet)].egress.size() <
-         egress_places_;
+  return out_ports_[passing ? stops_.port(machine_, id) : logic_.out_port(packet)].egress.size() < egress_places_;
 }
 
 bool NativePort::receive() {
@@ -181,7 +180,7 @@ void NativePort::arrive(PacketId id) {
   if (stops_.passes(id)) {
     if (recorder_ != nullptr) [[unlikely]]
       note_visit(id, false, begin);
-    return pass_on(id, stops_.port(machine_.topology, id));
+    return pass_on(id, stops_.port(machine_, id));
   }
   const PacketFate fate = logic_.fate(packet);
   switch (fate) {

@@ -74,7 +74,9 @@ class NativePort {
     ResourceId here;
 
     bool passes(PacketId id) const { return all != nullptr && (*all)[id.value] != here; }
-    std::size_t port(const Topology& topology, PacketId id) const { return topology.exit(here, (*all)[id.value]).port; }
+    std::size_t port(const Machine& machine, PacketId id) const {
+      return machine.topology.exit(here, (*all)[id.value], machine.packet(id).direction).port;
+    }
   };
   /// One link, and the packets that the link has not taken yet.
   struct OutPort {

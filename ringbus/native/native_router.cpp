@@ -20,6 +20,7 @@ NativeRouter::NativeRouter(ResourceId node, NativeMachine& machine, bool links_f
     : node_(node),
       topology_(machine.shared.topology),
       stops_(machine.stops),
+      packets_(machine.shared.packets),
       links_fail_(links_fail),
       places_(topology_.hub_places(node.value - topology_.resources())) {
   if (places_ == 0) places_ = std::numeric_limits<std::size_t>::max();
@@ -95,7 +96,7 @@ bool NativeRouter::pass_on(InPort& in) {
   bool moved = false;
   while (!in.waiting.empty()) {
     const PacketId id = in.waiting.front();
-    OutPort& out = out_ports_[topology_.exit(node_, stops_[id.value]).port];
+    OutPort& out = out_ports_[topology_.exit(node_, stops_[id.value], packets_[id.value].direction).port];
     if (out.egress.size() >= places_) break;
     in.waiting.pop_front();
     out.egress.push_back(id);

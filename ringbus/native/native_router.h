@@ -46,6 +46,7 @@ class NativeRouter {
   ResourceId node_;
   const Topology& topology_;
   const std::vector<ResourceId>& stops_;
+  const std::vector<Packet>& packets_;  // of which it reads the direction alone, which never changes
   bool links_fail_;
   std::size_t places_;  // of each egress queue
   std::vector<InPort> in_ports_;

@@ -1,17 +1,25 @@
 #include "ringbus/topology/drawn_shape.h"
 
-#include <fmt/format.h>
+#include <algorithm>
+#include <utility>
 
-#include "ringbus/topology/topology.h"
+#include <fmt/format.h>
 
 namespace carousel::ringbus {
 
 namespace {
 
-GraphNode drawn_group(const char* name, std::size_t count) {
+GraphNode drawn_group(const char* name, std::int64_t count) {
   GraphNode node;
   node.name = name;
-  node.count = static_cast<std::int64_t>(count);
+  node.count = count;
+  return node;
+}
+
+GraphNode drawn_node(const char* name, GraphNodeKind kind) {
+  GraphNode node;
+  node.name = name;
+  node.kind = kind;
   return node;
 }
 
@@ -21,19 +29,49 @@ GraphLink ring_of(std::string nodes) {
   return link;
 }
 
+/// One medium that all resources share and hear. The way to the bus takes half of the link's latency, the way from it
+/// the other half, each at least a cycle.
+void draw_bus(TopologyConfig& out) {
+  out.nodes.push_back(drawn_node("bus", GraphNodeKind::kBus));
+  const std::int64_t there = std::max<std::int64_t>(1, out.link.latency_cycles / 2);
+  const std::int64_t back = std::max<std::int64_t>(1, out.link.latency_cycles - there);
+  GraphLink link;
+  link.from = "r[*]";
+  link.to = "bus";
+  link.latency_cycles = there;
+  link.both = there == back;
+  out.links = {link};
+  if (link.both) return;
+  std::swap(link.from, link.to);
+  link.latency_cycles = back;
+  out.links.push_back(link);
+}
+
+/// Two rings, each for the packets of a lane, which visit resources in the order of their ring.
+void draw_two_ways(TopologyConfig& out, std::int64_t resources) {
+  out.links = {ring_of("r[*]"), ring_of(resources == 2 ? "r[*]" : fmt::format("r[0], r[{}..1]", resources - 1))};
+  out.links[0].lane = 0;
+  out.links[1].lane = 1;
+  out.tour = Tour::kNearest;
+}
+
 /// Lines from each bridge through its group and back, and the ring of bridges.
-void draw_bridges(const Topology& topology, TopologyConfig& out) {
-  GraphNode& bridges = out.nodes.emplace_back(drawn_group("bridge", topology.groups().size()));
+/// A packet goes through the rest of its own group, then round the bridges and into the groups that want it, and at
+/// last into its own group again. A bridge has room for all packets there are, so that neither ring waits for the
+/// other.
+void draw_bridges(std::int64_t resources, std::int64_t groups, TopologyConfig& out) {
+  GraphNode& bridges = out.nodes.emplace_back(drawn_group("bridge", groups));
   bridges.kind = GraphNodeKind::kRouter;
   bridges.forward = Forward::kWhole;
-  for (std::size_t g = 0; g < topology.groups().size(); ++g) {
-    const auto [first, last] = topology.groups()[g];
-    out.links.push_back(ring_of(first == last ? fmt::format("bridge[{}], r[{}]", g, first.value)
-                                              : fmt::format("bridge[{}], r[{}..{}]", g, first.value, last.value)));
-    if (topology.groups().size() == 1) continue;
+  const auto first_of = [&](std::int64_t group) { return (group * resources + groups - 1) / groups; };
+  for (std::int64_t g = 0; g < groups; ++g) {
+    const std::int64_t first = first_of(g), last = first_of(g + 1) - 1;
+    out.links.push_back(ring_of(first == last ? fmt::format("bridge[{}], r[{}]", g, first)
+                                              : fmt::format("bridge[{}], r[{}..{}]", g, first, last)));
+    if (groups == 1) continue;
     GraphLink& next = out.links.emplace_back();
     next.from = fmt::format("bridge[{}]", g);
-    next.to = fmt::format("bridge[{}]", (g + 1) % topology.groups().size());
+    next.to = fmt::format("bridge[{}]", (g + 1) % groups);
   }
 }
 
@@ -42,43 +80,39 @@ void draw_bridges(const Topology& topology, TopologyConfig& out) {
 DrawnShape draw_shape(const TopologyConfig& config) {
   DrawnShape out{config, true, true, ""};
   if (config.shape == TopologyShape::kGraph) return out;
-  const Topology topology(config);
+  const bool links = config.resources > 1;
   out.config.shape = TopologyShape::kGraph;
-  out.config.nodes = {drawn_group("r", topology.resources())};
+  out.config.nodes = {drawn_group("r", config.resources)};
   out.config.links.clear();
   switch (config.shape) {
     case TopologyShape::kRing:
-      if (topology.resources() > 1) out.config.links = {ring_of("r[*]")};
+      if (links) out.config.links = {ring_of("r[*]")};
       break;
     case TopologyShape::kBidirectional:
-      if (topology.resources() > 1) (out.config.links = {ring_of("r[*]")}).front().both = true;
-      out.same = topology.resources() == 1;
-      out.difference =
-          "a packet of the shape goes all the way round in one direction, and one of the graph takes the "
-          "shortest way to its next stop";
+      if (links) draw_two_ways(out.config, config.resources);
       break;
     case TopologyShape::kHierarchical:
-      if (topology.resources() > 1) draw_bridges(topology, out.config);
+      if (links) draw_bridges(config.resources, std::min(config.groups, config.resources), out.config);
       break;
     case TopologyShape::kPointToPoint:
-      if (topology.resources() > 1) {
+      if (links) {
         GraphLink& all = out.config.links.emplace_back();
         all.from = all.all_to = "r[*]";
       }
-      out.same = topology.resources() != 2;
+      out.same = config.resources != 2;
       out.difference =
           "two resources of the shape have room for all packets, and two of the graph, which are a ring, "
           "have credits";
       break;
     case TopologyShape::kMultiRing:
-      out.possible = out.same = false;
-      out.difference = "its rings are links side by side between the same nodes, and a graph has one from node to node";
+      if (links) (out.config.links = {ring_of("r[*]")}).front().lanes = config.rings;
       break;
     case TopologyShape::kBus:
-      out.possible = out.same = false;
-      out.difference = "a bus is one medium that all resources hear, and a link leads from one node to another";
+      if (links) draw_bus(out.config);
       break;
     case TopologyShape::kCentral:
+      out.config.nodes = {drawn_node("unit", GraphNodeKind::kPacketProcess)};
+      break;
     case TopologyShape::kIndependent:
       out.possible = out.same = false;
       out.difference = "it has no links";

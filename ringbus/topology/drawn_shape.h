@@ -14,7 +14,8 @@ struct DrawnShape {
   std::string difference;  ///< what a graph cannot say, or what is different
 };
 
-/// Draws a shape. The graph names its resources r[0] and on, and a hierarchical network's bridges bridge[0] and on.
+/// Draws a shape. The graph names its resources r[0] and on, a hierarchical network's bridges bridge[0] and on, a bus
+/// bus, and a central machine unit.
 DrawnShape draw_shape(const TopologyConfig& config);
 
 }  // namespace carousel::ringbus

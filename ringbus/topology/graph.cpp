@@ -22,20 +22,34 @@ namespace {
 
 using config::Graph;
 
-/// The exits of all nodes towards all resources.
-std::vector<TopologyPlan::Exit> exits_of(const Graph& graph, const Routes& routes) {
+/// The ways of each lane's packets.
+std::vector<Routes> routes_of(const Graph& graph) {
+  std::vector<Routes> out;
+  for (std::size_t lane = 0; lane < graph.lanes; ++lane) out.emplace_back(graph, lane);
+  return out;
+}
+
+std::uint16_t direction_of(const Graph::Link& link) {
+  return static_cast<std::uint16_t>(std::max<std::int64_t>(0, link.lane));
+}
+
+/// The exits of all nodes towards all resources, lane by lane.
+std::vector<TopologyPlan::Exit> exits_of(const Graph& graph, const std::vector<Routes>& routes) {
   std::vector<std::uint16_t> ports(graph.links.size()), links_of(graph.nodes.size());
   std::vector<std::uint32_t> in_order(graph.links.size());
   std::iota(in_order.begin(), in_order.end(), 0u);
-  std::ranges::sort(in_order, {}, [&](std::uint32_t link) { return graph.links[link].to; });
+  std::ranges::sort(in_order, {}, [&](std::uint32_t link) {
+    return std::pair(direction_of(graph.links[link]), graph.links[link].to);
+  });
   for (const std::uint32_t i : in_order) ports[i] = links_of[graph.links[i].from]++;
-  std::vector<TopologyPlan::Exit> exits(graph.nodes.size() * graph.resources);
+  std::vector<TopologyPlan::Exit> exits(graph.nodes.size() * graph.lanes * graph.resources);
   for (std::uint32_t at = 0; at < graph.nodes.size(); ++at)
-    for (std::uint32_t to = 0; to < graph.resources; ++to) {
-      const std::uint32_t i = routes.link(at, to);
-      if (i == Routes::kNone) continue;
-      exits[at * std::size_t{graph.resources} + to] = {ports[i], goes_through(graph, routes, i, to)};
-    }
+    for (std::size_t lane = 0; lane < graph.lanes; ++lane)
+      for (std::uint32_t to = 0; to < graph.resources; ++to) {
+        const std::uint32_t i = routes[lane].link(at, to);
+        if (i == Routes::kNone) continue;
+        exits[(at * graph.lanes + lane) * graph.resources + to] = {ports[i], goes_through(graph, routes[lane], i, to)};
+      }
   return exits;
 }
 
@@ -77,28 +91,31 @@ std::vector<std::uint32_t> there_and_back(const Graph& graph, const Routes& rout
   return {};
 }
 
-/// Judges packets that visit resources: by the circles of links that wait for one another, and what these hold.
+/// Judges packets that visit resources: by the circles of links that wait for one another, and what these hold. Lanes
+/// that have no links in common do not wait for one another, so a circle is in one of them.
 class VisitJudge {
  public:
-  VisitJudge(const TopologyConfig& config, const Graph& graph, const Routes& routes, TopologyPlan& plan)
+  VisitJudge(const TopologyConfig& config, const Graph& graph, const std::vector<Routes>& routes, TopologyPlan& plan)
       : config_(config),
         graph_(graph),
         routes_(routes),
         plan_(plan),
-        on_the_way_(static_cast<std::uint64_t>(plan.packets_in_flight) * graph.resources) {
+        each_(plan.packets_in_flight * (graph.lanes_meet() ? graph.lanes : 1)),
+        on_the_way_(each_ * graph.resources) {
     for (const Graph::Link& link : graph.links) places_.push_back(static_cast<std::uint64_t>(link.depth) + 1);
   }
 
   /// Fills in the verdict, and whether resources need room for all packets.
   void judge() {
     std::vector<std::uint32_t> circle;
-    if (config_.visit == Visit::kOwners) circle = there_and_back(graph_, routes_, places_, on_the_way_);
+    for (std::size_t lane = 0; lane < graph_.lanes && circle.empty() && config_.visit == Visit::kOwners; ++lane)
+      circle = there_and_back(graph_, routes_[lane], places_, on_the_way_);
     if (circle.empty()) circle = smallest(true);
     if (keeps(circle)) return;
     if (config_.flow == Flow::kNone) {
       plan_.verdict = {true, fmt::format("nothing bounds the packets on the way: {} resources may put {} each on links "
                                          "of which a circle holds {} ({})",
-                                         graph_.resources, plan_.packets_in_flight, held(circle), named(circle))};
+                                         graph_.resources, each_, held(circle), named(circle))};
       return;
     }
     // Resources may have more places; those of routers are given.
@@ -108,12 +125,11 @@ class VisitJudge {
       plan_.verdict = {false,
                        fmt::format("room: a circle of links holds {} packets ({}), and {} resources put up to {} "
                                    "each on the way, so every resource has egress places for all of them",
-                                   held(circle), named(circle), graph_.resources, plan_.packets_in_flight)};
+                                   held(circle), named(circle), graph_.resources, each_)};
     else if (!keeps(of_routers))
-      plan_.verdict = {true,
-                       fmt::format("a circle of links holds {} packets ({}), and {} resources put up to {} each "
-                                   "on the way; routers with buffers: auto have room for all of them",
-                                   held(of_routers), named(of_routers), graph_.resources, plan_.packets_in_flight)};
+      plan_.verdict = {true, fmt::format("a circle of links holds {} packets ({}), and {} resources put up to {} each "
+                                         "on the way; routers with buffers: auto have room for all of them",
+                                         held(of_routers), named(of_routers), graph_.resources, each_)};
   }
 
  private:
@@ -122,9 +138,13 @@ class VisitJudge {
     std::vector<bool> bounded;
     for (std::size_t i = 0; i < graph_.nodes.size(); ++i)
       bounded.push_back(i < graph_.resources ? bounded_resources : graph_.nodes[i].drawn->buffers.has_value());
-    const std::span<const ResourceId> round(plan_.successors[0]);
-    return visit_dependencies(graph_, routes_, config_.visit == Visit::kAll ? round : round.first(0), bounded)
-        .smallest_circle(places_, on_the_way_);
+    Dependencies waits(graph_.links.size());
+    for (std::size_t lane = 0; lane < graph_.lanes; ++lane) {
+      const std::span<const ResourceId> round(plan_.successors[lane]);
+      waits.join(
+          visit_dependencies(graph_, routes_[lane], config_.visit == Visit::kAll ? round : round.first(0), bounded));
+    }
+    return waits.smallest_circle(places_, on_the_way_);
   }
   std::uint64_t held(const std::vector<std::uint32_t>& circle) const {
     std::uint64_t sum = 0;
@@ -132,21 +152,28 @@ class VisitJudge {
     return sum;
   }
   std::string named(const std::vector<std::uint32_t>& circle) const { return circle_text(graph_, circle); }
+  /// The links of each lane are one ring: as many as nodes, all of which are resources that reach one another.
+  bool is_rings() const {
+    if (graph_.nodes.size() != graph_.resources || graph_.lanes_meet()) return false;
+    std::vector<std::uint32_t> links(graph_.lanes);
+    for (const Graph::Link& link : graph_.links) ++links[direction_of(link)];
+    return std::ranges::all_of(links, [&](std::uint32_t count) { return count == graph_.resources; });
+  }
   /// Tells whether the rule of topology.flow keeps the circle from filling up, and fills in the verdict then.
   bool keeps(const std::vector<std::uint32_t>& circle) {
     if (circle.empty())
       plan_.verdict = {false, "no circle: links that wait for one another end at nodes with room for all packets"};
     else if (config_.flow == Flow::kCredits && on_the_way_ < held(circle))
-      plan_.verdict = {
-          false, fmt::format("credits: {} resources with at most {} packets each put {} packets on the way, "
-                             "and the smallest circle of links holds {} ({}), so one place is always free",
-                             graph_.resources, plan_.packets_in_flight, on_the_way_, held(circle), named(circle))};
-    else if (config_.flow == Flow::kBubble && circle.size() == graph_.links.size() &&
-             graph_.nodes.size() == graph_.resources &&
+      plan_.verdict = {false,
+                       fmt::format("credits: {} resources with at most {} packets each put {} packets on the way, "
+                                   "and the smallest circle of links holds {} ({}), so one place is always free",
+                                   graph_.resources, each_, on_the_way_, held(circle), named(circle))};
+    else if (config_.flow == Flow::kBubble && is_rings() &&
              std::ranges::all_of(graph_.links, [](const Graph::Link& link) { return link.depth >= 2; }))
       plan_.verdict = {false,
-                       "bubble: the links are one ring, and a packet enters only where two places of the link "
-                       "are free, so one stays free"};
+                       fmt::format("bubble: the links {} one ring, and a packet enters only where two places of the "
+                                   "link are free, so one stays free",
+                                   graph_.lanes > 1 ? "of each lane are" : "are")};
     else
       return false;
     return true;
@@ -154,24 +181,40 @@ class VisitJudge {
 
   const TopologyConfig& config_;
   const Graph& graph_;
-  const Routes& routes_;
+  const std::vector<Routes>& routes_;  // by lane
   TopologyPlan& plan_;
+  std::uint64_t each_;  // packets of a resource that may be in a circle
   std::uint64_t on_the_way_;
   std::vector<std::uint64_t> places_;  // by link, with one to leave its first node
 };
+
+/// Packets go straight over the bus.
+void plan_the_bus(const TopologyConfig& config, TopologyPlan& plan) {
+  plan.direct = plan.room_for_all = true;
+  plan.hubs.front() = TopologyPlan::Hub::kBus;  // there are no routers, and other nodes come behind it
+  plan.verdict =
+      config.flow == Flow::kNone
+          ? verdict_of_flow(config)
+          : DeadlockVerdict{false,
+                            "bus: every resource has egress places for all packets there are, so a packet that the "
+                            "bus brings is always taken in"};
+}
 
 }  // namespace
 
 TopologyPlan plan_graph(const TopologyConfig& config) {
   const Graph graph = draw_checked(config);
-  const Routes routes(graph);
+  const std::vector<Routes> routes = routes_of(graph);
   TopologyPlan plan;
-  plan.successors = {config.tour == Tour::kNearest ? nearest_round(graph, routes) : round_in_steps(config, 1)};
+  for (const Routes& of_lane : routes)
+    plan.successors.push_back(config.tour == Tour::kNearest ? nearest_round(graph, of_lane)
+                                                            : round_in_steps(config, 1));
   for (const Graph::Link& link : graph.links) {
     const Graph::Node &from = graph.nodes[link.from], &to = graph.nodes[link.to];
     TopologyPlan::Wire& wire = plan.wires.emplace_back();
     wire.from = ResourceId(link.from);
     wire.to = ResourceId(link.to);
+    wire.direction = direction_of(link);
     wire.latency_cycles = link.latency_cycles;
     wire.node_cycles = from.drawn->latency_cycles;
     wire.depth = link.depth;
@@ -183,16 +226,20 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
       std::ranges::all_of(
           graph.links, [&](const Graph::Link& link) { return link.bytes_per_cycle == config.link.bytes_per_cycle; }) &&
       std::ranges::all_of(graph.nodes, [](const Graph::Node& node) { return node.drawn->forward == Forward::kHead; });
-  plan.channels = plan_channels(config, graph, routes);
+  plan.channels = plan_channels(config, graph, routes.front());
   for (const Graph::Node& node : graph.nodes)
     plan.claim_cycles.push_back(static_cast<std::uint32_t>(node.drawn->claim_cycles));
-  plan.routed = true;
-  plan.exits = exits_of(graph, routes);
   for (std::size_t i = graph.resources; i < graph.nodes.size(); ++i) {
     plan.hubs.push_back(TopologyPlan::Hub::kRouter);
     plan.hub_places.push_back(static_cast<std::uint32_t>(graph.nodes[i].drawn->buffers.value_or(0)));
   }
   plan.packets_in_flight = packets_in_flight(config);
+  if (graph.bus()) {
+    plan_the_bus(config, plan);
+    return plan;
+  }
+  plan.routed = true;
+  plan.exits = exits_of(graph, routes);
   if (const auto ring = config::stop_ring_entry(config))
     plan.verdict = stop_ring_verdict(config.links[*ring].stops);
   else

@@ -41,18 +41,30 @@ std::string circle_text(const Graph& graph, const std::vector<std::uint32_t>& ci
   return circle.size() > kShown ? fmt::format("{} and {} more", out, circle.size() - kShown) : out;
 }
 
+namespace {
+
+template <class Body>
+void for_all_pairs(const Graph& graph, const Body& body) {
+  for (std::uint32_t from = 0; from < graph.resources; ++from)
+    for (std::uint32_t to = 0; to < graph.resources; ++to) body(from, to);
+}
+
+}  // namespace
+
 GraphFacts graph_facts(const TopologyConfig& config) {
   const Graph graph = draw_checked(config);
-  const Routes routes(graph);
   GraphFacts facts;
   facts.resources = graph.resources;
   facts.routers = graph.of_kind(GraphNodeKind::kRouter).size();
   facts.links = graph.links.size();
+  facts.ways = graph.lanes * graph.resources * graph.resources;
+  const auto bus = graph.bus();
+  if (bus) facts.bus = graph.nodes[*bus].name;
   std::vector<std::uint64_t> pairs(graph.links.size());
   std::uint64_t nodes = 0;
   std::int64_t cycles = 0;
-  for (std::uint32_t from = 0; from < graph.resources; ++from)
-    for (std::uint32_t to = 0; to < graph.resources; ++to) {
+  const auto add_lane = [&](const Routes& routes) {
+    for_all_pairs(graph, [&](std::uint32_t from, std::uint32_t to) {
       std::int64_t way = 0;
       std::uint64_t links = 0;
       ++nodes;
@@ -64,12 +76,14 @@ GraphFacts graph_facts(const TopologyConfig& config) {
       });
       facts.diameter = std::max(facts.diameter, links);
       cycles += way;
-      if (way <= facts.longest_cycles) continue;
+      if (way <= facts.longest_cycles) return;
       facts.longest_cycles = way;
       facts.longest_from = graph.nodes[from].name;
       facts.longest_to = graph.nodes[to].name;
-    }
-  const double all = static_cast<double>(graph.resources) * static_cast<double>(graph.resources);
+    });
+  };
+  for (std::size_t lane = 0; lane < graph.lanes; ++lane) add_lane(Routes(graph, lane));
+  const auto all = static_cast<double>(facts.ways);
   facts.mean_nodes = static_cast<double>(nodes) / all;
   facts.mean_cycles = static_cast<double>(cycles) / all;
   if (graph.links.empty()) return facts;
@@ -94,9 +108,15 @@ GraphFacts graph_facts(const TopologyConfig& config) {
     if (load(link) > load(busiest) || (load(link) == load(busiest) && ends(link) < ends(busiest))) busiest = link;
   facts.busiest = graph.name_of(graph.links[busiest]);
   facts.busiest_pairs = pairs[busiest];
+  double load_of_busiest = load(busiest);
+  if (bus) {  // its links cross it one at a time
+    facts.busiest = facts.bus;
+    facts.busiest_pairs = static_cast<std::uint64_t>(graph.resources) * (graph.resources - 1);
+    load_of_busiest = static_cast<double>(facts.busiest_pairs) / static_cast<double>(config.link.bytes_per_cycle);
+  }
   if (facts.busiest_pairs > 0)
-    facts.bound =
-        static_cast<double>(graph.resources) / (load(busiest) * static_cast<double>(config.link.bytes_per_cycle));
+    facts.bound = static_cast<double>(facts.ways) / static_cast<double>(graph.resources) /
+                  (load_of_busiest * static_cast<double>(config.link.bytes_per_cycle));
   return facts;
 }
 

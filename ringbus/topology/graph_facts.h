@@ -24,15 +24,17 @@ double link_mm(const config::Graph& graph, const config::Graph::Link& link);
 /// A few links by name.
 std::string circle_text(const config::Graph& graph, const std::vector<std::uint32_t>& circle);
 
-/// The ways of a graph between all pairs of resources, each with itself included: what a uniform load would meet.
+/// The ways of a graph between all pairs of resources in each lane, each with itself included: what a uniform load
+/// would meet.
 struct GraphFacts {
-  std::size_t resources = 0, routers = 0, links = 0;
+  std::size_t resources = 0, routers = 0, links = 0, ways = 0;
+  std::string bus;         ///< that all packets cross; empty without one
   double mean_nodes = 0;   ///< on a way, first and last included
   double mean_cycles = 0;  ///< that links and the nodes before them take
   std::string longest_from, longest_to;
   std::int64_t longest_cycles = 0;
   std::uint64_t diameter = 0;       ///< most links on a way
-  std::string busiest;              ///< the link that most ways use for its width
+  std::string busiest;              ///< the link, or bus, that most ways use for its width
   std::uint64_t busiest_pairs = 0;  ///< ways over it
   /// Load at which the busiest link would be full: flits of the width of topology.link for each resource and cycle.
   double bound = 0;

@@ -22,7 +22,8 @@ struct DeadlockVerdict {
 /// Nodes are the resources, from 0 on, and behind them the hubs.
 struct TopologyPlan {
   /// A one-way link. At each of its two ends `direction` is the number of its port, unless packets are sent directly:
-  /// then ports are counted in the order of the wires.
+  /// then ports are counted in the order of the wires, or with a bus of their resources. Where packets are routed it is
+  /// the lane that the link is for, and 0 of one for all.
   struct Wire {
     ResourceId from, to;
     std::uint16_t direction = 0;
@@ -37,7 +38,6 @@ struct TopologyPlan {
   /// A node that is no resource.
   enum class Hub : std::uint8_t {
     kBus,     ///< one medium for all: it moves one packet at a time, straight to its next stop
-    kBridge,  ///< joins the line of resources of its group (port 0) with the ring of bridges (port 1)
     kRouter,  ///< passes packets on to the port that `exits` names
   };
   /// The way out of a node towards a resource.
@@ -46,28 +46,22 @@ struct TopologyPlan {
     bool through = false;  ///< the next node sends a packet on as soon as its head has come
   };
 
-  /// The resources behind a bridge, from the first one on its line to the last.
-  struct Group {
-    ResourceId first, last;
-  };
-
   /// By direction, then by resource: the node that comes next on the round of that direction. A packet keeps its
-  /// direction all the way round. One direction at least.
+  /// direction all the way round. One direction at least. Lanes of a graph are directions.
   std::vector<std::vector<ResourceId>> successors;
   std::vector<Wire> wires;
   /// Packets are sent straight to their next stop, without passing other resources. The round then only says in which
   /// order a packet visits them.
   bool direct = false;
-  /// Packets find their way from stop to stop by `exits`, by node and then resource. Stops are in the order of the one
-  /// round; with `topology.visit: owners` those that own none of the members are left out. Ports are counted in the
-  /// order of the nodes at the other ends of their links.
+  /// Packets find their way from stop to stop by `exits`, by node, then direction and resource. Stops are in the order
+  /// of the round; with `topology.visit: owners` those that own none of the members are left out. Ports are counted in
+  /// the order of lanes, and then of the nodes at the other ends of their links.
   bool routed = false;
   std::vector<Exit> exits;
   /// Every node has egress places for all packets there are, so that no link waits for another.
   bool room_for_all = false;
   std::vector<std::uint32_t> hub_places;  ///< egress places of hubs for each port; 0, or empty: room for all packets
   std::vector<Hub> hubs;
-  std::vector<Group> groups;  ///< one a bridge
   /// Packets of its own that a resource may have under way in each direction.
   std::uint32_t packets_in_flight = 0;
   DeadlockVerdict verdict;

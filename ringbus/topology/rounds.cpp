@@ -18,9 +18,14 @@ TopologyPlan plan_of_rounds(const TopologyConfig& config, std::vector<std::vecto
   TopologyPlan plan;
   plan.successors = std::move(successors);
   const std::uint16_t directions = static_cast<std::uint16_t>(plan.successors.size());
-  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(config.resources); ++r)
-    for (std::uint16_t d = 0; d < directions; ++d)
-      plan.wires.push_back({ResourceId(r), plan.successors[d][r], d, config.link.latency_cycles});
+  for (std::uint16_t d = 0; d < directions; ++d) {
+    ResourceId at(0);
+    for (std::int64_t i = 0; i < config.resources; ++i) {
+      const ResourceId next = plan.successors[d][at.value];
+      plan.wires.push_back({at, next, d, config.link.latency_cycles});
+      at = next;
+    }
+  }
   plan.packets_in_flight = packets_in_flight(config);
   plan.verdict = verdict_of_flow(config);
   for (std::uint16_t d = 0; d < directions; ++d) plan.ack_directions.push_back(d);

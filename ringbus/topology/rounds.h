@@ -13,8 +13,8 @@ namespace carousel::ringbus {
 /// number. A step of `resources - 1` goes backwards.
 std::vector<ResourceId> round_in_steps(const TopologyConfig& config, std::int64_t step);
 
-/// A plan of rings: a wire for each step of each round, resource by resource, with the flow control's rule against
-/// deadlock. Acknowledgements of synthetic traffic go on round the ring of their packets.
+/// A plan of rings: a wire for each step of each round, round after round from the first resource on, with the flow
+/// control's rule against deadlock. Acknowledgements of synthetic traffic go on round the ring of their packets.
 TopologyPlan plan_of_rounds(const TopologyConfig& config, std::vector<std::vector<ResourceId>> successors);
 
 /// Packets that a resource may have under way in each direction, for every shape whose packets go round.

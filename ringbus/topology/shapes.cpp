@@ -8,6 +8,7 @@
 #include "core/config/fields/topology.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
+#include "ringbus/topology/drawn_shape.h"
 
 namespace carousel::ringbus {
 
@@ -18,14 +19,18 @@ struct Shape {
   TopologyPlan (*plan)(const TopologyConfig& config);
 };
 
+TopologyPlan plan_drawn(const TopologyConfig& config) {
+  return plan_graph(draw_shape(config).config);
+}
+
 constexpr std::array kShapes{
     Shape{TopologyShape::kRing, plan_ring},
     Shape{TopologyShape::kBidirectional, plan_bidirectional},
     Shape{TopologyShape::kMultiRing, plan_multi_ring},
-    Shape{TopologyShape::kHierarchical, plan_hierarchical},
+    Shape{TopologyShape::kHierarchical, plan_drawn},
     Shape{TopologyShape::kPointToPoint, plan_point_to_point},
-    Shape{TopologyShape::kBus, plan_bus},
-    Shape{TopologyShape::kCentral, plan_central},
+    Shape{TopologyShape::kBus, plan_drawn},
+    Shape{TopologyShape::kCentral, plan_drawn},
     Shape{TopologyShape::kIndependent, plan_independent},
     Shape{TopologyShape::kGraph, plan_graph},
 };
@@ -41,7 +46,6 @@ TopologyPlan plan_topology(const TopologyConfig& config) {
   if (config.resources == 1) {
     plan.wires.clear();
     plan.hubs.clear();
-    plan.groups.clear();
     plan.routed = false;
     plan.exits.clear();
     plan.verdict = {false, "one resource: packets are tested where they are issued, there are no links"};

@@ -9,14 +9,12 @@ namespace carousel::ringbus {
 /// Throws a SimulationError for a shape that has no plan.
 TopologyPlan plan_topology(const TopologyConfig& config);
 
-// One function a shape, each in the file of its name.
+// One function a shape, each in the file of its name. A hierarchical network, a bus and a
+// central machine are their graphs (drawn_shape.h).
 TopologyPlan plan_ring(const TopologyConfig& config);
 TopologyPlan plan_bidirectional(const TopologyConfig& config);
 TopologyPlan plan_multi_ring(const TopologyConfig& config);
-TopologyPlan plan_hierarchical(const TopologyConfig& config);
 TopologyPlan plan_point_to_point(const TopologyConfig& config);
-TopologyPlan plan_bus(const TopologyConfig& config);
-TopologyPlan plan_central(const TopologyConfig& config);
 TopologyPlan plan_independent(const TopologyConfig& config);
 TopologyPlan plan_graph(const TopologyConfig& config);
 

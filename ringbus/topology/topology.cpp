@@ -1,6 +1,7 @@
 #include "ringbus/topology/topology.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "ringbus/topology/shapes.h"
 
@@ -17,8 +18,6 @@ Topology::Topology(const TopologyConfig& config)
       ports_(resources_ + plan_.hubs.size()) {
   for (const std::vector<ResourceId>& round : plan_.successors)
     successors_.insert(successors_.end(), round.begin(), round.end());
-  for (std::uint32_t g = 0; g < plan_.groups.size(); ++g)
-    group_of_.insert(group_of_.end(), plan_.groups[g].last.value - plan_.groups[g].first.value + 1, g);
   number_ports();
   if (properties_.carries_traffic && !plan_.routed && plan_.hubs.empty()) number_positions();
 }
@@ -33,10 +32,15 @@ void Topology::number_ports() {
     put(ports_[plan_.wires[i].from.value].out, i);
     put(ports_[plan_.wires[i].to.value].in, i);
   }
-  if (plan_.routed)
+  if (plan_.routed || broadcasts())
     for (Ports& ports : ports_) {
-      std::ranges::sort(ports.in, {}, [&](std::uint32_t wire) { return plan_.wires[wire].from.value; });
-      std::ranges::sort(ports.out, {}, [&](std::uint32_t wire) { return plan_.wires[wire].to.value; });
+      const auto sort = [&](std::vector<std::uint32_t>& some, ResourceId Wire::*end) {
+        std::ranges::sort(some, {}, [&](std::uint32_t i) {
+          return std::pair(plan_.wires[i].direction, (plan_.wires[i].*end).value);
+        });
+      };
+      sort(ports.in, &Wire::from);
+      sort(ports.out, &Wire::to);
     }
   out_port_of_.resize(plan_.wires.size());
   for (const Ports& ports : ports_)
@@ -90,12 +94,6 @@ Topology::Route Topology::route(ResourceId from, ResourceId to, std::uint32_t ra
     if (links_between(best.direction, from, to) == best.hops) --others;
   }
   return best;
-}
-
-bool Topology::group_wants(const Packet& packet, std::uint32_t group) const {
-  if (visit_all_ || group_of(packet.owner) == group) return true;
-  const Group& line = plan_.groups[group];
-  return skip_from_entrance(packet, group) <= line.last.value - line.first.value;
 }
 
 std::uint32_t Topology::hops(const Packet& packet) const {

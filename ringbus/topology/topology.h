@@ -11,14 +11,12 @@
 #include "ringbus/packets/packet.h"
 #include "ringbus/topology/plan.h"
 
-// A new topology takes these places and no others (docs/extending.md has an example):
+// A new topology takes these places and no others (docs/extending.md):
 //   1. its value in TopologyShape with its name and its properties (core/config/fields/topology.h); if one engine alone
 //      can run it, also its place in `.only` on the row of the key there;
-//   2. its own file here, with one function that fills in a TopologyPlan (plan.h): the wires, the next node in each
-//      direction, hubs, packets in flight and the verdict on deadlock. Shapes whose packets travel rings only name the
-//      rounds (rounds.h);
-//   3. that function's declaration in shapes.h and its row in the table of shapes.cpp.
-// A hub of a new kind also needs an agent of the cycle engine (cycle/fabric).
+//   2. its drawing in drawn_shape.cpp, from which its plan follows;
+//   3. its row in the table of shapes.cpp.
+// A hub of a new kind also needs a kind of node, and an agent of the cycle engine (cycle/fabric).
 
 namespace carousel::ringbus {
 
@@ -28,7 +26,6 @@ class Topology {
  public:
   using Wire = TopologyPlan::Wire;
   using Hub = TopologyPlan::Hub;
-  using Group = TopologyPlan::Group;
 
   explicit Topology(const TopologyConfig& config);
 
@@ -45,15 +42,14 @@ class Topology {
   std::size_t directions() const { return plan_.successors.size(); }
   /// Nodes `resources()` and up.
   const std::vector<Hub>& hubs() const { return plan_.hubs; }
-  const std::vector<Group>& groups() const { return plan_.groups; }
-  std::uint32_t group_of(ResourceId r) const { return group_of_[r.value]; }
 
   bool direct() const { return plan_.direct; }
   /// Packets find their way from stop to stop by exit().
   bool routed() const { return plan_.routed; }
-  /// The way out of a node to a resource that is another node; only where packets are routed.
-  TopologyPlan::Exit exit(ResourceId node, ResourceId stop) const {
-    return plan_.exits[node.value * std::size_t{resources_} + stop.value];
+  /// The way of a packet of this direction out of a node to a resource that is another node; only where packets are
+  /// routed.
+  TopologyPlan::Exit exit(ResourceId node, ResourceId stop, std::size_t direction = 0) const {
+    return plan_.exits[(node.value * directions() + direction) * std::size_t{resources_} + stop.value];
   }
   /// The virtual channels of links, under synthetic traffic; only where packets are routed.
   const ChannelPlan& channels() const { return plan_.channels; }
@@ -89,7 +85,7 @@ class Topology {
   }
   /// The port by which the packet leaves the resource `here`.
   std::size_t out_port(const Packet& packet, ResourceId here) const {
-    if (plan_.routed) return exit(here, next(packet, here)).port;
+    if (plan_.routed) return exit(here, next(packet, here), packet.direction).port;
     if (!plan_.direct) return packet.direction;
     return ports_to_.empty() ? 0 : out_port_to(here, next(packet, here));
   }
@@ -97,18 +93,15 @@ class Topology {
   std::size_t out_port_to(ResourceId here, ResourceId to) const {
     return ports_to_[here.value * std::size_t{resources_} + to.value];
   }
-  /// Resources that a packet sent from `here` passes before one that has work with it, or before it reaches a hub;
-  /// none where packets are sent directly. Where they are routed it counts stops.
+  /// Resources that a packet sent from `here` passes before one that has work with it; none where packets are sent
+  /// directly. Where they are routed it counts stops.
   std::uint16_t skip(const Packet& packet, ResourceId here) const {
-    return plan_.direct || (plan_.routed && !visit_all_) ? std::uint16_t{0}
-                                                         : skip_from(packet, round_of(packet.direction)[here.value]);
+    if (plan_.direct || (plan_.routed && !visit_all_)) return 0;
+    const ResourceId* round = round_of(packet.direction);
+    std::uint16_t skip = 0;
+    for (ResourceId at = round[here.value]; at != packet.owner && !wanted(packet, at); at = round[at.value]) ++skip;
+    return skip;
   }
-  /// As skip(), for a packet that enters a group from its bridge.
-  std::uint16_t skip_from_entrance(const Packet& packet, std::uint32_t group) const {
-    return skip_from(packet, plan_.groups[group].first);
-  }
-  /// Tells whether a packet that has reached the group's bridge has anything to do in the group, its owner included.
-  bool group_wants(const Packet& packet, std::uint32_t group) const;
   /// Resources other than its owner that have rays of a test packet.
   std::uint32_t other_owners(const Packet& packet) const {
     std::uint32_t others = 0;
@@ -135,12 +128,6 @@ class Topology {
   const ResourceId* round_of(std::uint16_t direction) const {
     return successors_.data() + direction * std::size_t{resources_};
   }
-  std::uint16_t skip_from(const Packet& packet, ResourceId at) const {
-    const ResourceId* round = round_of(packet.direction);
-    std::uint16_t skip = 0;
-    for (; at.value < resources_ && at != packet.owner && !wanted(packet, at); at = round[at.value]) ++skip;
-    return skip;
-  }
   std::uint16_t links_between(std::size_t direction, ResourceId from, ResourceId to) const;
   void number_ports();
   void number_positions();
@@ -154,7 +141,6 @@ class Topology {
   bool has_widths_;
   std::vector<ResourceId> successors_;      // the plan's, direction after direction
   std::vector<std::uint32_t> position_;     // likewise: links from resource 0; empty without traffic
-  std::vector<std::uint32_t> group_of_;     // by resource; empty without groups
   std::vector<Ports> ports_;                // by node
   std::vector<std::uint32_t> out_port_of_;  // by wire
   std::vector<std::uint32_t> ports_to_;     // by resource, then destination; empty unless all pairs have links

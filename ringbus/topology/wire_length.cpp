@@ -36,10 +36,7 @@ namespace {
 double links_long(const Topology& topology, const Topology::Wire& wire) {
   const auto resources = static_cast<std::uint32_t>(topology.resources());
   if (topology.broadcasts()) return wire.to.value >= resources ? static_cast<double>(resources) : 0.0;
-  const auto place = [&](std::uint32_t node) {
-    if (node < resources) return node;
-    return topology.routed() ? beside(topology, node) : topology.groups()[node - resources].first.value;
-  };
+  const auto place = [&](std::uint32_t node) { return node < resources ? node : beside(topology, node); };
   return place_distance(resources, place(wire.from.value), place(wire.to.value));
 }
 
@@ -50,7 +47,8 @@ double wire_length(const Topology& topology, const Topology::Wire& wire, double 
 }
 
 double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle, double link_mm) {
-  if (topology.broadcasts()) return link_mm * static_cast<double>(topology.resources());
+  if (topology.broadcasts() && topology.wires().front().mm < 0)
+    return link_mm * static_cast<double>(topology.resources());
   double sum = 0;
   for (const Topology::Wire& wire : topology.wires())
     sum += wire_length(topology, wire, link_mm) * static_cast<double>(wire.bytes_per_cycle) /

@@ -11,17 +11,23 @@
 namespace carousel {
 
 /// The kinds of nodes of a network that is drawn (`topology.shape: graph`).
-enum class GraphNodeKind { kResource, kRouter, kCache, kMemory, kShading, kPacketProcess };
+enum class GraphNodeKind { kResource, kPacketProcess, kRouter, kBus, kCache, kMemory, kShading };
 template <>
 inline constexpr auto kEnumNames<GraphNodeKind> = [] {
   using enum GraphNodeKind;
   return names<GraphNodeKind>({{kResource, "resource"},
+                               {kPacketProcess, "packet_process"},
                                {kRouter, "router"},
+                               {kBus, "bus"},
                                {kCache, "cache"},
                                {kMemory, "memory"},
-                               {kShading, "shading"},
-                               {kPacketProcess, "packet_process"}});
+                               {kShading, "shading"}});
 }();
+
+/// Tells whether nodes of the kind own rays, and packets stop there.
+constexpr bool owns_rays(GraphNodeKind kind) {
+  return kind == GraphNodeKind::kResource || kind == GraphNodeKind::kPacketProcess;
+}
 
 /// The kinds of messages that may travel over a link.
 enum class Carried { kPackets, kShapes, kNewRays, kCompletedRays };
@@ -139,6 +145,8 @@ struct GraphLink {
   GridSize mesh;
   bool both = false, dateline = false;
   std::optional<std::int64_t> latency_cycles, bytes_per_cycle, depth, virtual_channels;
+  std::optional<std::int64_t> lane;  ///< absent: of all packets
+  std::int64_t lanes = 1;
   std::vector<Carried> carries{Carried::kPackets};
   RingStops stops;
 
@@ -148,6 +156,7 @@ struct GraphLink {
 namespace config {
 
 inline constexpr IntRange kChannels{1, 64};
+inline constexpr std::int64_t kMaxLanes = 64;
 inline constexpr RealRange kDiePlace{-1000, 1000};
 
 template <class V>
@@ -163,8 +172,9 @@ void describe(V& v, GraphNode& c) {
   v.field("name", c.name, "", "The name of the node, or of the group.");
   v.choice(
       "kind", c.kind,
-      "A compute resource; a router, which only passes packets on; a cache, an L2 or a bank of one; a memory behind "
-      "the caches; or shading, with ray control. A packet_process is not built yet.");
+      "A compute resource; a packet_process, which is a unit of a central machine with its test cells or testers; a "
+      "router, which only passes packets on; a bus, one medium that all resources hear; a cache, an L2 or a bank of "
+      "one; a memory behind the caches; or shading, with ray control.");
   v.field_or_auto("count", c.count, IntRange{1, kMaxResources}, "nodes",
                   "The number of nodes of a group, called name[0] and on; auto is one node of that very name.");
   v.field("latency_cycles", c.latency_cycles, IntRange{0, 1'000'000}, "cycles",
@@ -239,6 +249,11 @@ void describe(V& v, GraphLink& c) {
   v.field("dateline", c.dateline, "",
           "Under topology.channels: dateline, a packet that goes on by this link takes a channel of the next class. If "
           "no link says so, they are chosen so that they break every circle.");
+  v.field_or_auto("lane", c.lane, IntRange{0, kMaxLanes - 1}, "",
+                  "The packets that may take the link, those of a lane. A resource's packets have lanes in turn, and "
+                  "keep them until they are home. Auto is packets of all lanes.");
+  v.field("lanes", c.lanes, IntRange{1, kMaxLanes}, "links",
+          "The number of equal links side by side, one for each lane from `lane` on, or from 0 on.");
   v.section("stops", c.stops, "The stops of a ring that is the whole network, for synthetic traffic.");
 }
 

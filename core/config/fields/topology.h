@@ -130,6 +130,18 @@ struct TopologyConfig {
   ChannelRule channels = ChannelRule::kAny;
 };
 
+/// A machine of units that hold rays, collections and all testers (US 9633468): the shape, or a graph of such units.
+inline bool is_central(const TopologyConfig& c) {
+  if (c.shape != TopologyShape::kGraph) return c.shape == TopologyShape::kCentral;
+  return std::ranges::any_of(c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kPacketProcess; });
+}
+
+/// A bus is the network that packets travel: the shape, or a graph around one.
+inline bool is_bus(const TopologyConfig& c) {
+  if (c.shape != TopologyShape::kGraph) return c.shape == TopologyShape::kBus;
+  return std::ranges::any_of(c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kBus; });
+}
+
 /// The testers of a resource: its own, or those of the whole machine.
 inline const TestersConfig& testers_of(const TestersConfig& machine, const TopologyConfig& topology,
                                        std::int64_t resource) {
@@ -184,8 +196,8 @@ void describe(V& v, TopologyConfig& c) {
       .relax("rings", Better::kTwice, Relaxed{.times = 0});
   v.field("groups", c.groups, IntRange{1, kMaxResources}, "groups", "The number of groups of a hierarchical network.");
   v.choice("form", c.form,
-           "The form of a central machine: test cells (testers.simd.lanes), each for the rays of its places in ray "
-           "memory, or testers behind a distributor (testers.distributor).");
+           "The form of a central machine, or of each packet_process of a graph: test cells (testers.simd.lanes), each "
+           "for the rays of its places in ray memory, or testers behind a distributor (testers.distributor).");
   v.choice("visit", c.visit,
            "A packet is handled by all resources, or only by the owners of its rays, which point_to_point and graph "
            "imply.");
@@ -201,7 +213,7 @@ void describe(V& v, TopologyConfig& c) {
   v.list("ways", c.ways, "The ways that are given.");
   v.choice("tour", c.tour,
            "The order in which a packet visits resources of a graph: that of their names in `nodes`, or from each to "
-           "the nearest that is left, the first at the beginning.");
+           "the nearest that is left by the links of its lane, the first at the beginning.");
   v.choice("channels", c.channels,
            "The virtual channel that a packet takes: any; those of a class that counts the datelines it has passed; "
            "or those of a class that counts its links.");

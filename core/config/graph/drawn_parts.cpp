@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -45,6 +46,12 @@ class PartFinder {
     if (const Graph::Link* link = carrier(what))
       issue(fmt::format("topology.links.{}.carries", link->entry),
             fmt::format("nothing of the kind {} travels; expected {}", enum_name(what), expected));
+  }
+
+  Nodes all_resources() const {
+    Nodes out(graph_.resources);
+    std::iota(out.begin(), out.end(), 0u);
+    return out;
   }
 
   std::int64_t interleave(std::size_t entry) {
@@ -94,7 +101,7 @@ class PartFinder {
     Nodes served;
     std::string error;
     if (pattern.empty())
-      served = graph_.of_kind(GraphNodeKind::kResource);
+      served = all_resources();
     else if (served = graph_.names.find(pattern, error); served.empty())
       return issue(node_key(entry, ".serves"), std::move(error));
     for (const std::uint32_t node : served) {
@@ -146,7 +153,7 @@ class PartFinder {
       issue(node_key(entry, ".kind"),
             fmt::format("no rays travel to {} or from it; expected links with carries: [new_rays, completed_rays]",
                         name(pools.front())));
-    const Nodes resources = graph_.of_kind(GraphNodeKind::kResource);
+    const Nodes resources = all_resources();
     if (parts_.new_rays) one_way(graph_.only(Carried::kNewRays), Carried::kNewRays, pools, resources);
     if (parts_.completed_rays) one_way(graph_.only(Carried::kCompletedRays), Carried::kCompletedRays, resources, pools);
   }

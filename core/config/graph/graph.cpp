@@ -8,8 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "core/config/graph/routes.h"
-
 namespace carousel::config {
 
 namespace {
@@ -29,15 +27,31 @@ class Drawing {
             fmt::format("expected at most {} resources, found {}", kMaxResources, drawn_resources(config_)));
       return {};
     }
-    add_nodes(GraphNodeKind::kResource);
-    graph_.resources = static_cast<std::uint32_t>(graph_.nodes.size());
-    for (const auto& [kind, name] : kEnumNames<GraphNodeKind>)
-      if (kind != GraphNodeKind::kResource && is_built(kind)) add_nodes(kind);
+    for (const bool owners : {true, false}) {
+      for (const auto& [kind, name] : kEnumNames<GraphNodeKind>)
+        if (owns_rays(kind) == owners) add_nodes(kind);
+      if (owners) graph_.resources = static_cast<std::uint32_t>(graph_.nodes.size());
+    }
     if (graph_.nodes.size() > kMaxDrawn) {
       issue("topology.nodes", fmt::format("expected at most {} nodes, found {}", kMaxDrawn, graph_.nodes.size()));
       return {};
     }
-    for (entry_ = 0; entry_ < config_.links.size(); ++entry_) add_links(config_.links[entry_]);
+    for (entry_ = 0; entry_ < config_.links.size(); ++entry_) {
+      const GraphLink& link = config_.links[entry_];
+      const bool side_by_side = link.lane || link.lanes > 1;
+      const std::int64_t first = link.lane.value_or(0);
+      if (first + link.lanes > kMaxLanes) {
+        link_issue("lanes", fmt::format("expected lanes up to {} at most, found {} to {}", kMaxLanes - 1, first,
+                                        first + link.lanes - 1));
+        continue;
+      }
+      const std::size_t before = issues_.size();
+      for (std::int64_t i = 0; i < link.lanes && issues_.size() == before; ++i) {
+        lane_ = side_by_side ? first + i : Graph::Link::kAllLanes;
+        graph_.lanes = std::max(graph_.lanes, static_cast<std::size_t>(lane_ + 1));
+        add_links(link);
+      }
+    }
     graph_.routing = config_.routes;
     if (graph_.routing == Routing::kUpDown && !config_.root.empty()) find_root();
     if (graph_.routing == Routing::kGiven)
@@ -124,17 +138,21 @@ class Drawing {
     const auto name = [&](std::uint32_t node) -> const std::string& { return graph_.nodes[node].name; };
     if (to >= graph_.resources)
       return way_issue(key == "next" ? "to" : key, fmt::format("a way ends at a resource, and {} is none", name(to)));
-    const auto link = std::ranges::find_if(graph_.links, [&](const Graph::Link& one) {
-      return one.from == at && one.to == next && one.carries_any({Carried::kPackets});
-    });
-    if (link == graph_.links.end())
+    Nodes links;  // one a lane
+    for (std::uint32_t i = 0; i < graph_.links.size(); ++i) {
+      const Graph::Link& one = graph_.links[i];
+      if (one.from == at && one.to == next && one.carries_any({Carried::kPackets})) links.push_back(i);
+    }
+    if (links.empty())
       return way_issue(key, fmt::format("expected nodes with a link between them, found {} and {}, which have none",
                                         name(at), name(next)));
-    const auto number = static_cast<std::uint32_t>(link - graph_.links.begin());
     const auto [known, added] = hops_.emplace(std::pair{at, to}, graph_.hops.size());
-    if (added) return graph_.hops.push_back({at, to, number, entry_});
+    if (added) {
+      for (const std::uint32_t link : links) graph_.hops.push_back({at, to, link, entry_});
+      return;
+    }
     const Graph::Hop& first = graph_.hops[known->second];
-    if (first.link != number)
+    if (graph_.links[first.link].to != next)
       way_issue(key, fmt::format("topology.ways.{} sends packets at {} for {} on to {}; expected the same, found {}",
                                  first.entry, name(at), name(to), name(graph_.links[first.link].to), name(next)));
   }
@@ -227,52 +245,38 @@ class Drawing {
     const auto name = [&](std::uint32_t node) -> const std::string& { return graph_.nodes[node].name; };
     if (from == to)
       return link_issue("", fmt::format("a link leads from {0} to {0}; expected another node", name(from)));
-    const auto [known, added] = entries_.emplace(std::pair{from, to}, entry_);
-    if (!added)
+    std::vector<LaneEntry>& beside = entries_[{from, to}];
+    const auto same = std::ranges::find_if(beside, [&](const LaneEntry& other) {
+      constexpr std::int64_t kAll = Graph::Link::kAllLanes;
+      return lane_ == kAll || other.lane == kAll || other.lane == lane_;
+    });
+    if (same != beside.end())
       return link_issue("", fmt::format("a second link from {} to {}, beside that of topology.links.{}; expected one, "
-                                        "twice as wide for example",
-                                        name(from), name(to), known->second));
+                                        "twice as wide for example, or several with lanes of their own",
+                                        name(from), name(to), same->entry));
+    beside.push_back({lane_, entry_});
     const LinkConfig& all = config_.link;
     std::vector<Carried> carries = link.carries;
     std::ranges::sort(carries);
     for (std::int64_t ring = 0; ring < link.stops.rings; ++ring)
       graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
                               link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
-                              link.virtual_channels.value_or(all.virtual_channels), entry_, link.dateline, carries});
+                              link.virtual_channels.value_or(all.virtual_channels), entry_, link.dateline, carries,
+                              lane_});
   }
 
   const TopologyConfig& config_;
   std::vector<GraphIssue>& issues_;
   Graph graph_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> entries_;  // by the link's nodes
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> hops_;     // by node and destination
+  struct LaneEntry {
+    std::int64_t lane;
+    std::size_t entry;
+  };
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<LaneEntry>> entries_;  // by the link's nodes
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> hops_;                // by node and destination
   std::size_t entry_ = 0;
+  std::int64_t lane_ = Graph::Link::kAllLanes;  // of the links that are added
 };
-
-/// The fault of the way from one resource to another, if it is never reached.
-std::optional<GraphIssue> fault_of(const Graph& graph, const Routes& routes, std::uint32_t from, std::uint32_t to) {
-  std::uint32_t at = from;
-  for (std::size_t links = 0; at != to; ++links) {
-    const std::uint32_t link = routes.link(at, to);
-    if (link == Routes::kNone) {
-      const std::string_view rule = graph.routing == Routing::kUpDown ? " that goes up and then down" : "";
-      return GraphIssue{"topology.links", fmt::format("there is no way{} from {} to {}; expected links that lead there",
-                                                      rule, graph.nodes[from].name, graph.nodes[to].name)};
-    }
-    at = graph.links[link].to;
-    if (links < graph.nodes.size()) continue;
-    // It goes round: what is given sends it there.
-    const auto given = std::ranges::find_if(graph.hops, [&](const Graph::Hop& hop) {
-      return hop.to == to && hop.at == at && hop.link == routes.link(at, to);
-    });
-    if (given != graph.hops.end())
-      return GraphIssue{fmt::format("topology.ways.{}", given->entry),
-                        fmt::format("a packet from {0} for {1} never comes there: it goes round past {2}; expected a "
-                                    "way that ends",
-                                    graph.nodes[from].name, graph.nodes[to].name, graph.nodes[at].name)};
-  }
-  return std::nullopt;
-}
 
 }  // namespace
 
@@ -308,10 +312,19 @@ Graph Graph::only(Carried what) const {
   return out;
 }
 
+std::optional<std::uint32_t> Graph::bus() const {
+  const std::vector<std::uint32_t> buses = of_kind(GraphNodeKind::kBus);
+  return buses.empty() ? std::nullopt : std::optional(buses.front());
+}
+
+bool Graph::lanes_meet() const {
+  return lanes > 1 && std::ranges::any_of(links, [](const Link& link) { return link.lane == Link::kAllLanes; });
+}
+
 std::int64_t drawn_resources(const TopologyConfig& config) {
   std::int64_t sum = 0;
   for (const GraphNode& node : config.nodes)
-    if (node.kind == GraphNodeKind::kResource) sum += node.count.value_or(1);
+    if (owns_rays(node.kind)) sum += node.count.value_or(1);
   return sum;
 }
 
@@ -331,50 +344,6 @@ void name_overrides(TopologyConfig& config) {
 
 Graph draw_graph(const TopologyConfig& config, std::vector<GraphIssue>& issues) {
   return Drawing(config, issues).draw();
-}
-
-std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std::uint32_t>& starts) {
-  std::vector<Nodes> next(graph.nodes.size());
-  for (const Graph::Link& link : graph.links) next[link.from].push_back(link.to);
-  std::vector<std::vector<bool>> out;
-  for (const std::uint32_t start : starts) {
-    std::vector<bool>& reached = out.emplace_back(graph.nodes.size());
-    Nodes open{start};
-    reached[start] = true;
-    while (!open.empty()) {
-      const std::uint32_t at = open.back();
-      open.pop_back();
-      for (const std::uint32_t to : next[at]) {
-        if (reached[to]) continue;
-        reached[to] = true;
-        open.push_back(to);
-      }
-    }
-  }
-  return out;
-}
-
-void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
-  if (graph.nodes.size() < 2) return;
-  std::vector<bool> linked(graph.nodes.size());
-  for (const Graph::Link& link : graph.links) linked[link.from] = linked[link.to] = true;
-  bool all = true;
-  for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
-    if (linked[i]) continue;
-    all = all && i >= graph.resources;
-    issues.push_back({fmt::format("topology.nodes.{}", graph.nodes[i].entry),
-                      fmt::format("{} has no link; expected one to it and one from it", graph.nodes[i].name)});
-  }
-  if (!all) return;  // the ways that are missing are those
-  if (graph.resources < 2) return;
-  const Graph packets = graph.only(Carried::kPackets);
-  const Routes routes(packets);
-  for (std::uint32_t from = 0; from < graph.resources; ++from)
-    for (std::uint32_t to = 0; to < graph.resources; ++to)
-      if (std::optional<GraphIssue> fault = fault_of(packets, routes, from, to)) {
-        issues.push_back(std::move(*fault));
-        return;  // one names the gap; there may be thousands
-      }
 }
 
 }  // namespace carousel::config

@@ -23,15 +23,19 @@ struct Graph {
   };
   /// From node to node, one way.
   struct Link {
+    static constexpr std::int64_t kAllLanes = -1;
+
     std::uint32_t from, to;
     std::int64_t latency_cycles, bytes_per_cycle, depth, virtual_channels;
     std::size_t entry;  ///< its place in topology.links
     bool dateline;
     std::vector<Carried> carries = {};  ///< sorted
+    std::int64_t lane = kAllLanes;      ///< of the packets that may take it
 
+    bool is_for(std::size_t of) const { return lane == kAllLanes || lane == static_cast<std::int64_t>(of); }
     bool carries_any(std::initializer_list<Carried> some) const;
   };
-  /// A packet at `at` on its way to the resource `to` takes this link.
+  /// A packet at `at` on its way to the resource `to` takes this link, if the link is for its lane.
   struct Hop {
     std::uint32_t at, to, link;
     std::size_t entry;  ///< its place in topology.ways
@@ -40,13 +44,18 @@ struct Graph {
   std::vector<Node> nodes;
   std::vector<Link> links;
   std::uint32_t resources = 0;
+  std::size_t lanes = 1;  ///< of packets; each has the links of its own and those of all lanes
   NodeNames names;
   Routing routing = Routing::kShortest;
   std::optional<std::uint32_t> root;  ///< the node at the top for up_down, if it is named
-  std::vector<Hop> hops;              ///< the ways that are given, each node and destination once
+  std::vector<Hop> hops;              ///< the ways that are given, each node, destination and lane once
 
   /// The numbers of its nodes of a kind, in order.
   std::vector<std::uint32_t> of_kind(GraphNodeKind kind) const;
+  /// The node that all packets cross, if it is a bus.
+  std::optional<std::uint32_t> bus() const;
+  /// Links that are of all lanes, while there are several: packets of one lane may wait for those of another.
+  bool lanes_meet() const;
   /// The same nodes with the links alone that carry `what`. Ways of anything but packets are the shortest ones.
   Graph only(Carried what) const;
   /// "r[0] > r[1]"
@@ -61,23 +70,17 @@ struct GraphIssue {
 /// The number of resources that the nodes make.
 std::int64_t drawn_resources(const TopologyConfig& config);
 
-/// Tells whether nodes of the kind can be simulated.
-constexpr bool is_built(GraphNodeKind kind) {
-  return kind != GraphNodeKind::kPacketProcess;
-}
-
 /// Fills in which resources overrides name. A name that is no node is left out; check_graph() says so.
 void name_overrides(TopologyConfig& config);
 
-/// Writes out the graph; what is wrong with it is appended to `issues`, and left out. Nodes of kinds that are not built
-/// are left out, too.
+/// Writes out the graph; what is wrong with it is appended to `issues`, and left out.
 Graph draw_graph(const TopologyConfig& config, std::vector<GraphIssue>& issues);
 
 /// By start: the nodes to which ways lead from it, itself included.
 std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std::uint32_t>& starts);
 
 /// The faults of the whole: nodes without a link, resources between which no way leads packets, ways that go in a
-/// circle.
+/// circle, a bus with anything but links to and from resources.
 void check_ways(const Graph& graph, std::vector<GraphIssue>& issues);
 
 }  // namespace carousel::config

@@ -29,7 +29,7 @@ std::optional<std::pair<std::int64_t, std::int64_t>> range_of(std::string_view t
   if (text == "*") return std::pair{std::int64_t{0}, size - 1};
   const std::size_t dots = text.find("..");
   const auto first = index_of(text.substr(0, dots)), last = dots == text.npos ? first : index_of(text.substr(dots + 2));
-  if (!first || !last || *first > *last || *last >= size) return std::nullopt;
+  if (!first || !last || std::max(*first, *last) >= size) return std::nullopt;
   return std::pair{*first, *last};
 }
 
@@ -104,7 +104,8 @@ std::vector<std::uint32_t> NodeNames::find_one(std::string_view pattern, std::st
     return {};
   }
   std::vector<std::uint32_t> out;
-  for (std::int64_t i = range->first; i <= range->second; ++i)
+  const std::int64_t step = range->first <= range->second ? 1 : -1;
+  for (std::int64_t i = range->first; i != range->second + step; i += step)
     out.push_back(group.first + static_cast<std::uint32_t>(i));
   return out;
 }

@@ -10,7 +10,7 @@
 namespace carousel::config {
 
 /// The names of a graph's nodes, and what patterns of names stand for: `x` a node of that name; of a group, `r[*]` all
-/// nodes, `r[3]` one and `r[0..3]` a few; several of these with commas between them.
+/// nodes, `r[3]` one, `r[0..3]` a few, and `r[3..0]` these backwards; several of these with commas between them.
 class NodeNames {
  public:
   /// `size`: nodes of the group, of which `first` is the number of r[0]; absent: one node. False if the name is taken.

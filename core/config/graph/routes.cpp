@@ -111,11 +111,11 @@ std::uint32_t root_of(const Graph& graph) {
   return best;
 }
 
-Routes::Routes(const Graph& graph)
+Routes::Routes(const Graph& graph, std::size_t lane)
     : nodes_(graph.nodes.size()), links_(nodes_ * nodes_, kNone), ends_(graph.links.size()) {
   Links out(nodes_);
   for (std::uint32_t i = 0; i < graph.links.size(); ++i) {
-    out[graph.links[i].from].push_back(i);
+    if (graph.links[i].is_for(lane)) out[graph.links[i].from].push_back(i);
     ends_[i] = graph.links[i].to;
   }
   if (graph.routing == Routing::kUpDown) {
@@ -124,7 +124,8 @@ Routes::Routes(const Graph& graph)
     return;
   }
   for (std::uint32_t node = 0; node < nodes_; ++node) find_ways(graph, out, node, links_.data() + node * nodes_);
-  for (const Graph::Hop& hop : graph.hops) links_[hop.at * nodes_ + hop.to] = hop.link;
+  for (const Graph::Hop& hop : graph.hops)
+    if (graph.links[hop.link].is_for(lane)) links_[hop.at * nodes_ + hop.to] = hop.link;
 }
 
 }  // namespace carousel::config

@@ -21,11 +21,13 @@ namespace carousel::config {
 /// goes up after it has gone down, and links that wait for one another form no circle.
 ///
 /// given: by the table, and the shortest where it has no entry. Nothing here keeps such ways from going round.
+///
+/// Packets of a lane take the links that are for it, and the heights of up_down are those of all links.
 class Routes {
  public:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-  explicit Routes(const Graph& graph);
+  explicit Routes(const Graph& graph, std::size_t lane = 0);
 
   /// The link, by its number in the graph, by which a packet at `at` goes on to `to`; kNone if no way leads there, or
   /// it is there.

@@ -14,22 +14,25 @@ namespace carousel::config {
 
 namespace {
 
-/// The keys of a node that its kind has. Returns whether the node can be simulated.
-bool check_node(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
-  if (!is_built(node.kind)) {
-    breach(key + ".kind", fmt::format("a node that is a {0} is not built yet; expected another kind, found {0}",
-                                      enum_name(node.kind)));
-    return false;
-  }
-  if (node.kind == GraphNodeKind::kResource) {
-    constexpr std::string_view otherwise = "a resource has places for its packets in test, and other nodes this key";
+/// The keys of a node that its kind has.
+void check_node(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
+  const bool bus = node.kind == GraphNodeKind::kBus;
+  if (bus || owns_rays(node.kind)) {
+    const std::string_view otherwise = bus ? "packets wait for a bus at the resources, and other nodes have this key"
+                                           : "a resource has places for its packets in test, and other nodes this key";
     if (node.buffers) breach(key + ".buffers", fmt::format("{}; expected auto, found {}", otherwise, *node.buffers));
     if (node.forward != Forward::kHead)
       breach(key + ".forward", fmt::format("{}; expected head, found {}", otherwise, enum_name(node.forward)));
   }
+  if (bus && node.count.value_or(1) > 1)
+    breach(key + ".count", fmt::format("all packets cross the same bus; expected one, found {}", *node.count));
   if (!node.serves.empty() && node.kind != GraphNodeKind::kCache)
-    breach(key + ".serves",
-           fmt::format("resources ask caches; expected none at a {}, found '{}'", enum_name(node.kind), node.serves));
+    breach(key + ".serves", fmt::format("{}; expected none at a {}, found '{}'",
+                                        node.kind == GraphNodeKind::kPacketProcess
+                                            ? "it serves its own cells or testers, which are testers.simd.lanes or "
+                                              "testers.distributor.testers"
+                                            : "resources ask caches",
+                                        enum_name(node.kind), node.serves));
   if (node.interleave_bytes && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kMemory)
     breach(key + ".interleave_bytes", fmt::format("caches and memories hold lines; expected auto at a {}, found {}",
                                                   enum_name(node.kind), *node.interleave_bytes));
@@ -41,7 +44,54 @@ bool check_node(const GraphNode& node, const std::string& key, const RuleBreach&
            "only the nodes of a group with a place stand side by side; expected count and at besides");
   else if (node.at.given && node.count.value_or(1) > 1 && !node.step.given)
     breach(key + ".at", "the nodes of a group cannot all stand there; expected step besides");
-  return true;
+}
+
+/// Units of a central machine are all alike, and a distributor knows one.
+void check_packet_processes(const Config& config, const RuleBreach& breach) {
+  const std::vector<GraphNode>& nodes = config.topology.nodes;
+  if (!is_central(config.topology)) return;
+  const auto other =
+      std::ranges::find_if(nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kResource; });
+  if (other != nodes.end())
+    breach(fmt::format("topology.nodes.{}.kind", other - nodes.begin()),
+           "beside a packet_process all nodes that own rays are such units; expected packet_process, found resource");
+  if (has_distributor(config) && drawn_resources(config.topology) > 1)
+    breach("topology.form", fmt::format("a distributor stands in a machine of one unit yet; expected cells, or one "
+                                        "packet_process; found distributor and {}",
+                                        drawn_resources(config.topology)));
+}
+
+/// Lanes are of packets of rays.
+void check_lanes(const Config& config, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  for (std::size_t i = 0; i < c.links.size(); ++i) {
+    const GraphLink& link = c.links[i];
+    if (!link.lane && link.lanes == 1) continue;
+    const std::string key = fmt::format("topology.links.{}.{}", i, link.lane ? "lane" : "lanes");
+    const std::string_view expected = link.lane ? "auto" : "1";
+    if (config.workload.kind == WorkloadConfig::Kind::kTraffic)
+      breach(key, fmt::format("synthetic traffic has no lanes on a graph; expected {}, or topology.shape: multi_ring "
+                              "or bidirectional",
+                              expected));
+    if (link.carries != GraphLink().carries)
+      breach(key,
+             fmt::format("packets have lanes, and other messages none; expected {}, or carries: [packets]", expected));
+  }
+}
+
+/// A bus moves its packets at one width.
+void check_bus(const Config& config, const Graph& graph, const RuleBreach& breach) {
+  if (!graph.bus()) return;
+  if (config.workload.kind == WorkloadConfig::Kind::kTraffic)
+    breach("topology.nodes", fmt::format("there is no traffic on a bus; expected routers in place of {}",
+                                         graph.nodes[*graph.bus()].name));
+  const auto other = std::ranges::find_if(graph.links, [&](const Graph::Link& link) {
+    return link.carries_any({Carried::kPackets}) && link.bytes_per_cycle != config.topology.link.bytes_per_cycle;
+  });
+  if (other != graph.links.end())
+    breach(fmt::format("topology.links.{}.bytes_per_cycle", other->entry),
+           fmt::format("a bus is as wide for all, as topology.link says; expected {}, found {}",
+                       config.topology.link.bytes_per_cycle, other->bytes_per_cycle));
 }
 
 /// Refuses what the wires of drawn parts cannot carry yet.
@@ -100,9 +150,9 @@ void check_parts(const Config& config, const Graph& graph, const DrawnParts& par
 void check_graph(const Config& config, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
   if (c.shape != TopologyShape::kGraph) return;
-  bool built = true;
-  for (std::size_t i = 0; i < c.nodes.size(); ++i)
-    built &= check_node(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
+  for (std::size_t i = 0; i < c.nodes.size(); ++i) check_node(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
+  check_packet_processes(config, breach);
+  check_lanes(config, breach);
   for (std::size_t i = 0; i < c.nodes.size() && config.engine.kind == EngineKind::kNative; ++i)
     if (const GraphNodeKind kind = c.nodes[i].kind; kind != GraphNodeKind::kResource && kind != GraphNodeKind::kRouter)
       breach(
@@ -121,9 +171,12 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   std::vector<GraphIssue> issues;
   const Graph graph = draw_graph(c, issues);
   DrawnParts drawn;
-  if (issues.empty() && built) check_ways(graph, issues);
-  if (issues.empty() && built) drawn = find_parts(c, graph, config.memory.line_bytes, issues);
-  if (issues.empty() && built) check_parts(config, graph, drawn, breach);
+  if (issues.empty()) check_ways(graph, issues);
+  if (issues.empty()) drawn = find_parts(c, graph, config.memory.line_bytes, issues);
+  if (issues.empty()) {
+    check_parts(config, graph, drawn, breach);
+    check_bus(config, graph, breach);
+  }
   for (std::size_t i = 0; i < c.overrides.size(); ++i) {
     const ResourceOverride& one = c.overrides[i];
     if (one.nodes.empty()) continue;

@@ -91,9 +91,9 @@ class NetworkRules {
   /// US 9633468: one collection buffer, and for each cell, or each tester behind the distributor, the rays of its own
   /// places.
   void central_is_one_unit() {
-    if (!cycle() || c.topology.shape != TopologyShape::kCentral) return;
+    if (!cycle() || !is_central(c.topology)) return;
     const bool cells = has_cells(c);
-    if (c.topology.resources != 1)
+    if (c.topology.shape == TopologyShape::kCentral && c.topology.resources != 1)
       breach_("topology.resources",
               fmt::format("a central machine is one unit, with {}; expected 1, found {}",
                           cells ? "testers.simd.lanes cells" : "testers.distributor.testers testers",

@@ -17,7 +17,7 @@ struct Course {
 /// The course of a packet that is at `node`, another one than its stop. Where links differ in width it fills in for how
 /// long the packet occupies this one.
 inline Course course_of(Token& token, const Topology& topology, ResourceId node) {
-  const TopologyPlan::Exit exit = topology.exit(node, ResourceId(token.stop));
+  const TopologyPlan::Exit exit = topology.exit(node, ResourceId(token.stop), token.lane);
   if (topology.has_widths()) [[unlikely]] {
     const Topology::Wire& wire = topology.wires()[topology.ports(node).out[exit.port]];
     const auto width = static_cast<std::uint32_t>(wire.bytes_per_cycle);

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "ringbus/cycle/fabric/bridge.h"
 #include "ringbus/cycle/fabric/bus.h"
 #include "ringbus/cycle/fabric/router.h"
 
@@ -10,16 +9,10 @@ namespace carousel::ringbus::cycle {
 
 std::unique_ptr<Hub> make_hub(std::uint32_t hub, const Topology& topology, std::span<const Packet> packets,
                               std::vector<InPort> in, std::vector<OutPort> out) {
-  switch (topology.hubs()[hub]) {
-    case Topology::Hub::kBus:
-      return std::make_unique<Bus>(topology, packets, std::move(in), std::move(out));
-    case Topology::Hub::kRouter:
-      return std::make_unique<Router>(ResourceId(static_cast<std::uint32_t>(topology.resources()) + hub), topology,
-                                      std::move(in), std::move(out));
-    case Topology::Hub::kBridge:
-      break;
-  }
-  return std::make_unique<Bridge>(hub, topology, packets, std::move(in), std::move(out));
+  if (topology.hubs()[hub] == Topology::Hub::kBus)
+    return std::make_unique<Bus>(topology, packets, std::move(in), std::move(out));
+  return std::make_unique<Router>(ResourceId(static_cast<std::uint32_t>(topology.resources()) + hub), topology,
+                                  std::move(in), std::move(out));
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -14,8 +14,9 @@ struct Token {
   std::uint16_t rays = 0;         ///< members
   std::uint32_t link_cycles = 1;  ///< cycles for which it occupies a link
   std::uint32_t entries = 0;      ///< IDs and results that dispatch reads if it looks into it
-  bool answers = false;           ///< it is an answer, on its way to the packet's owner
-  bool passes = false;            ///< the resource that hears it has none of its rays
+  bool answers : 1 = false;       ///< it is an answer, on its way to the packet's owner
+  bool passes : 1 = false;        ///< the resource that hears it has none of its rays
+  std::uint8_t lane = 0;          ///< the packet's direction, where packets are routed
   std::uint16_t stop = 0;         ///< the resource to which it goes next, where packets are routed
   std::uint32_t size_bytes = 0;
 

@@ -39,7 +39,7 @@ void SharedLink::step(Cycle now) {
 /// The near end has sent the packet a cycle ago, or that its tail comes now.
 void SharedLink::send_packet(Cycle now) {
   const Token token = ends_.near->packets.peek(ahead_);
-  const Cycle behind = topology_.exit(from_, ResourceId(token.stop)).through ? 0 : token.link_cycles - 1;
+  const Cycle behind = topology_.exit(from_, ResourceId(token.stop), token.lane).through ? 0 : token.link_cycles - 1;
   const Cycle begin = time_.packet(token.link_cycles, now - std::min<Cycle>(now, behind));
   ends_.far->packets.send(begin + behind + latency_, token);
   ++ahead_;

@@ -21,6 +21,11 @@ class Dependencies {
 
   void add(std::uint32_t link, std::uint32_t next);
   void set(std::uint32_t link, std::vector<std::uint32_t> next) { after_[link] = std::move(next); }
+  /// Adds those of others between the same links.
+  void join(const Dependencies& others) {
+    for (std::uint32_t link = 0; link < after_.size(); ++link)
+      for (const std::uint32_t next : others.after_[link]) add(link, next);
+  }
   const std::vector<std::uint32_t>& after(std::uint32_t link) const { return after_[link]; }
 
   /// The links of a circle, in order, that holds the fewest packets of all; empty if there is none. `places`: packets

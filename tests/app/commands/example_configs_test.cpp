@@ -1,10 +1,9 @@
 // Every configuration of configs/ and its folders runs, on a small picture of a small scene.
+#include "tests/app/support/example_configs.h"
+
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <regex>
-#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,34 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string text_of(const fs::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-std::vector<fs::path> example_configs() {
-  std::set<fs::path> found;
-  for (const auto& entry : fs::recursive_directory_iterator(CAROUSEL_SOURCE_DIR "/configs"))
-    if (const fs::path& path = entry.path();
-        (path.extension() == ".yaml" || path.extension() == ".json") && path.filename() != "schema.json")
-      found.insert(path);
-  return {found.begin(), found.end()};
-}
-
-std::string name_of(const testing::TestParamInfo<fs::path>& file) {
-  return std::regex_replace(fs::relative(file.param, CAROUSEL_SOURCE_DIR "/configs").string(), std::regex("\\W"), "_");
-}
-
 class ExampleConfigs : public testing::TestWithParam<fs::path> {};
 
 TEST_P(ExampleConfigs, Run) {
   const Program program;
   std::vector<std::string> arguments{"run", GetParam().string(), "--json", "--quiet", "--no-html", "--out", "out"};
-  const std::vector<std::string> small{"engine.what_if=false", "image.width=12",    "image.height=8",
-                                       "image.samples=1",      "image.max_depth=2", "scene.triangles=1000",
-                                       "scene.instances=50"};
+  const std::vector<std::string>& small = small_picture();
   for (const std::string& set : small) arguments.insert(arguments.end(), {"--set", set});
-  const bool traffic = text_of(GetParam()).find("traffic:") != std::string::npos;
+  const bool traffic = has_traffic(GetParam());
   if (traffic) arguments.insert(arguments.end(), {"--set", "workload.traffic.packets=1000"});
   if (!traffic) arguments.insert(arguments.end(), {"--set", "verify=reference"});
   const Outcome outcome = program.run(arguments);
@@ -66,10 +45,10 @@ TEST_P(ExampleConfigs, NameTheirSchemaAndStandInTheList) {
       text, schema, std::regex("^(# yaml-language-server: \\$schema=|\\{\\s*\"\\$schema\": \")(\\S+\\.json)")));
   EXPECT_TRUE(fs::equivalent(GetParam().parent_path() / schema[2].str(), CAROUSEL_SOURCE_DIR "/configs/schema.json"));
   EXPECT_THAT(text_of(CAROUSEL_SOURCE_DIR "/configs/README.md"),
-              testing::HasSubstr("| `" + fs::relative(GetParam(), CAROUSEL_SOURCE_DIR "/configs").string() + "` |"));
+              testing::HasSubstr("| `" + name_in_configs(GetParam()) + "` |"));
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ExampleConfigs, testing::ValuesIn(example_configs()), name_of);
+INSTANTIATE_TEST_SUITE_P(All, ExampleConfigs, testing::ValuesIn(example_configs()), example_name);
 
 }  // namespace
 }  // namespace carousel::example_configs_test

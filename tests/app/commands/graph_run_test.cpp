@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/support/program.h"
+#include "tests/app/support/same_machine.h"
 
 namespace carousel::graph_run_test {
 namespace {
@@ -17,16 +18,6 @@ using testing::Not;
 const std::string kMachine =
     "scene: {builtin: terrain, triangles: 600}\nimage: {width: 24, height: 16}\nengine: {kind: cycle, threads: 1}\n"
     "rays: {slots_per_resource: 64}\npackets: {rays: 8}\n";
-
-/// All that a report says but how the machine was named, and what the host took.
-Json results(const Program& program, const std::string& folder) {
-  Json report = Json::parse(program.read(folder + "/report.json"));
-  for (const char* key : {"config", "host", "ignored_keys", "checksum", "drawing"}) report.erase(key);
-  for (auto& [key, section] : report.items())
-    if (section.is_object())
-      for (const char* time : {"seconds", "wall_seconds", "build_seconds", "import_seconds"}) section.erase(time);
-  return report;
-}
 
 struct Drawn {
   const char* name;
@@ -53,7 +44,7 @@ TEST_P(DrawnShape, TakesTheSameCycles) {
     const Outcome run = program.run(arguments);
     ASSERT_EQ(run.status, 0) << run.err;
   }
-  EXPECT_EQ(results(program, "shape"), results(program, "graph")) << drawn.out;
+  EXPECT_EQ(results_of(program, "shape"), results_of(program, "graph")) << drawn.out;
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -73,7 +64,26 @@ INSTANTIATE_TEST_SUITE_P(
         Drawn{"HierarchicalOwners", "shape: hierarchical, resources: 7, groups: 3, visit: owners"},
         Drawn{"OneGroup", "shape: hierarchical, resources: 4, groups: 1, visit: owners"},
         Drawn{"PointToPoint", "shape: point_to_point, resources: 5"},
-        Drawn{"PointToPointBubble", "shape: point_to_point, resources: 3, flow: bubble"}),
+        Drawn{"PointToPointBubble", "shape: point_to_point, resources: 3, flow: bubble"},
+        Drawn{"MultiRing", "shape: multi_ring, resources: 4, rings: 3"},
+        Drawn{"MultiRingOwners", "shape: multi_ring, resources: 7, rings: 2, visit: owners, link: {depth: 1}"},
+        Drawn{"MultiRingBubble", "shape: multi_ring, resources: 4, rings: 2, flow: bubble, link: {depth: 2}"},
+        Drawn{"MultiRingFaults", "shape: multi_ring, resources: 3, rings: 2", {"faults.links.drop=0.01"}},
+        Drawn{"Bidirectional", "shape: bidirectional, resources: 5"},
+        Drawn{"BidirectionalOwners", "shape: bidirectional, resources: 8, visit: owners, link: {bytes_per_cycle: 8}"},
+        Drawn{"BidirectionalTwo", "shape: bidirectional, resources: 2, visit: owners"},
+        Drawn{"BidirectionalRays", "shape: bidirectional, resources: 4", {"rays.placement=first_taker"}},
+        Drawn{"BidirectionalWindow",
+              "shape: bidirectional, resources: 6, visit: owners",
+              {"testers.window=4", "testers.contexts=1", "collections.traversal=ordered"}},
+        Drawn{"Bus", "shape: bus, resources: 5"},
+        Drawn{"BusOwners", "shape: bus, resources: 6, visit: owners, link: {latency_cycles: 5, depth: 1}"},
+        Drawn{"BusCells",
+              "shape: bus, resources: 3",
+              {"collections.home=hash", "collections.when_full=spill", "energy.profile=n7"}},
+        Drawn{"BusFaults", "shape: bus, resources: 4", {"faults.links.drop=0.01"}},
+        Drawn{"Cells", "shape: central, resources: 1", {"testers.simd.lanes=8", "testers.contexts=4"}},
+        Drawn{"Distributor", "shape: central, resources: 1, form: distributor"}),
     [](const auto& one) { return one.param.name; });
 
 const char* const kClusters =
@@ -214,13 +224,83 @@ TEST(GraphRun, WaysAndToursKeepThePictureAndChangeTheTime) {
 
 TEST(GraphRun, ShapesThatAreNoGraphsAreRefused) {
   const Program program;
-  program.write("bus.yaml", kMachine + "topology: {shape: bus}\n");
-  const Outcome bus = program.run({"check", "bus.yaml", "--graph"});
-  EXPECT_EQ(bus.status, 2);
-  EXPECT_THAT(bus.err, HasSubstr("bus.yaml:6:19: topology.shape: a graph cannot say bus yet: a bus is one medium"));
-  const Outcome both = program.run({"check", "bus.yaml", "--graph", "--set", "topology.shape=bidirectional"});
-  ASSERT_EQ(both.status, 0) << both.err;
-  EXPECT_THAT(both.out, HasSubstr("# Not the same machine: "));
+  program.write("apart.yaml", kMachine + "topology: {shape: independent}\n");
+  const Outcome apart = program.run({"check", "apart.yaml", "--graph"});
+  EXPECT_EQ(apart.status, 2);
+  EXPECT_THAT(apart.err, HasSubstr("apart.yaml:6:19: topology.shape: a graph cannot say independent yet: it has no"));
+}
+
+TEST(GraphRun, APacketKeepsItsLane) {
+  const Program program;
+  program.write("lanes.yaml", kMachine +
+                                  "topology:\n  shape: graph\n  nodes: [{name: r, count: 4}]\n  links:\n"
+                                  "    - {ring: 'r[*]', lane: 0}\n    - {ring: 'r[3..0]', lane: 1}\n");
+  const auto links = [&](const std::string& set) {
+    const Outcome run = program.run({"run", "lanes.yaml", "--json", "--set", set});
+    EXPECT_EQ(run.status, 0) << run.err;
+    return Json::parse(run.out)["links"];
+  };
+  // By names the second lane's packets visit resources against their ring, and pass most of it.
+  const auto packets = [&](const Json& rows, std::size_t lane) {
+    std::uint64_t sum = 0;
+    for (std::size_t i = 4 * lane; i < 4 * lane + 4; ++i) sum += rows[i]["packets"].get<std::uint64_t>();
+    return sum;
+  };
+  const Json names = links("topology.tour=names"), nearest = links("topology.tour=nearest");
+  ASSERT_EQ(names.size(), 8u);
+  EXPECT_EQ(names[4]["from"], 3);
+  EXPECT_EQ(names[4]["to"], 2);
+  EXPECT_GT(packets(names, 1), packets(names, 0));
+  EXPECT_LT(packets(nearest, 1), packets(names, 1));
+}
+
+TEST(GraphRun, CheckSaysWhatLanesAndABusCarry) {
+  const Program program;
+  const auto check = [&](const std::string& topology) {
+    program.write("graph.yaml", kMachine + "topology:\n  shape: graph\n  nodes: " + topology);
+    const Outcome outcome = program.run({"check", "graph.yaml"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.out;
+  };
+  const std::string lanes = check("[{name: r, count: 4}]\n  links: [{ring: 'r[*]', lanes: 2}]\n");
+  EXPECT_THAT(lanes, HasSubstr("# busiest: r[0] > r[1], on 6 of 32 ways; a uniform load fills it at 1.3333 flits"));
+  EXPECT_THAT(lanes, HasSubstr("# deadlock: impossible. credits: 4 resources with at most 16 packets each put 64 "));
+  // Packets of both lanes may fill the link between two routers.
+  const std::string meet = check(
+      "[{name: r, count: 4}, {name: x, kind: router, count: 2}]\n  links: [{ring: 'r[*], x[0]', lane: 0}, {ring: "
+      "'r[*], x[1]', lane: 1}, {line: 'x[*]', both: true}]\n");
+  EXPECT_THAT(meet, HasSubstr("4 resources put up to 32 each on the way"));
+  const std::string bus = check(
+      "[{name: r, count: 4}, {name: b, kind: bus}]\n  links: [{from: 'r[*]', to: b, both: "
+      "true}]\n");
+  EXPECT_THAT(bus, HasSubstr("# graph: 4 resources, a bus, 8 links of one way\n"));
+  EXPECT_THAT(bus, HasSubstr("# busiest: b, on 12 of 16 ways; a uniform load fills it at 0.3333 flits"));
+  EXPECT_THAT(bus, HasSubstr("# deadlock: impossible. bus: "));
+}
+
+TEST(GraphRun, SeveralUnitsOfACentralMachineHaveCellsAndMemoryOfTheirOwn) {
+  const Program program;
+  program.write("one.yaml", kMachine + "topology: {shape: central, resources: 1}\ntesters: {simd: {lanes: 8}}\n");
+  program.write("units.yaml",
+                kMachine +
+                    "topology:\n  shape: graph\n  nodes:\n"
+                    "    - {name: unit, kind: packet_process, count: 3}\n"
+                    "    - {name: l2, kind: cache, count: 2}\n    - {name: dram, kind: memory}\n  links:\n"
+                    "    - {ring: 'unit[*]'}\n"
+                    "    - {from: 'unit[*]', all_to: 'l2[*]', both: true, carries: [shapes]}\n"
+                    "    - {from: 'l2[*]', to: dram, both: true, carries: [shapes]}\n"
+                    "testers: {simd: {lanes: 8}}\n");
+  const auto run = [&](const std::string& file, const std::string& set) {
+    const Outcome outcome = program.run({"run", file, "--json", "--set", "verify=reference", "--set", set});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(outcome.out);
+  };
+  const Json one = run("one.yaml", "engine.what_if=false"), units = run("units.yaml", "engine.what_if=false");
+  EXPECT_EQ(units["digest"], one["digest"]);
+  EXPECT_GT(units["links"][0]["packets"], 0);
+  EXPECT_LT(units["engine"]["cycles"], one["engine"]["cycles"]);
+  const std::string fewer = "topology.overrides=[{nodes: 'unit[1..2]', testers: {simd: {lanes: 1}}}]";
+  EXPECT_GT(run("units.yaml", fewer)["engine"]["cycles"], units["engine"]["cycles"]);
 }
 
 }  // namespace

@@ -44,7 +44,17 @@ inline std::vector<KeyRow> network_key_rows() {
        kTerrain,
        {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"},
        {"[{ring: 'r[*]', latency_cycles: 9}]", "[{ring: 'r[*]', bytes_per_cycle: 8}]", "[{ring: 'r[*]', depth: 1}]",
-        "[{ring: 'r[*]', both: true}]", "[{mesh: [2, 2]}]"}},
+        "[{ring: 'r[*]', both: true}]", "[{mesh: [2, 2]}]", "[{ring: 'r[*]', lanes: 2}]",
+        "[{ring: 'r[*]', lane: 0}, {ring: 'r[3..0]', lane: 1}]"}},
+      {"topology.nodes",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: b, kind: router}], "
+        "links: [{from: 'r[*]', to: b, both: true}]}"},
+       {"[{name: r, count: 4}, {name: b, kind: bus}]"}},
+      {"topology.nodes",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}", "testers.simd.lanes=8"},
+       {"[{name: r, count: 4, kind: packet_process}]"}},
       {"topology.nodes",
        kTerrain,
        {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: a, kind: cache, count: 2, serves: 'r[0..2]'}, "

@@ -47,6 +47,9 @@ TEST(GraphConfig, PatternsAreWrittenOutInOrder) {
                     "{line: 'r[0], hub, r[3]', both: true}"),
               ElementsAre("r[0] > r[2]", "r[2] > r[0]", "r[1] > r[3]", "r[3] > r[1]", "r[2] > hub", "hub > r[2]",
                           "r[0] > hub", "hub > r[0]", "hub > r[3]", "r[3] > hub"));
+  EXPECT_THAT(links("{ring: 'r[2..0], hub', lanes: 2}, {from: 'r[0]', to: 'r[3]', both: true}"),
+              ElementsAre("r[2] > r[1]", "r[1] > r[0]", "r[0] > hub", "hub > r[2]", "r[2] > r[1]", "r[1] > r[0]",
+                          "r[0] > hub", "hub > r[2]", "r[0] > r[3]", "r[3] > r[0]"));
   EXPECT_THAT(links("{mesh: [2, 2]}, {from: 'r[*]', all_to: hub, both: true}").size(), 16u);
   EXPECT_THAT(links("{from: 'r[0..2]', all_to: 'r[0..2]'}, {line: 'r[2], r[3], hub', both: true}"),
               ElementsAre("r[0] > r[1]", "r[0] > r[2]", "r[1] > r[0]", "r[1] > r[2]", "r[2] > r[0]", "r[2] > r[1]",
@@ -139,9 +142,60 @@ INSTANTIATE_TEST_SUITE_P(
                   "  links: [{ring: 'r[*]', depth: 4}, {from: 'r[0]', to: 'r[2]', depth: 1}]}\n",
                   "topology.links.1.depth: flow: bubble keeps one place of a link free; expected at least 2 for r[0] > "
                   "r[2], found 1"},
-        BadConfig{"NotBuilt",
-                  "topology: {shape: graph, nodes: [{name: a}, {name: c, kind: packet_process}], links: []}\n",
-                  "topology.nodes.1.kind: a node that is a packet_process is not built yet"},
+        BadConfig{"OtherUnits",
+                  "topology: {shape: graph, nodes: [{name: c, kind: packet_process}, {name: a}], links: [{ring: 'a, "
+                  "c'}]}\ntesters: {simd: {lanes: 8}}\n",
+                  "topology.nodes.1.kind: beside a packet_process all nodes that own rays are such units"},
+        BadConfig{"TwoDistributors",
+                  "topology: {shape: graph, form: distributor, nodes: [{name: c, kind: packet_process, count: 2}],\n"
+                  "  links: [{ring: 'c[*]'}]}\n",
+                  "topology.form: a distributor stands in a machine of one unit yet"},
+        BadConfig{"UnitThatServes",
+                  "topology: {shape: graph, nodes: [{name: c, kind: packet_process, serves: c}], links: []}\n"
+                  "testers: {simd: {lanes: 8}}\n",
+                  "test.yaml:3:71: topology.nodes.0.serves: it serves its own cells or testers, which are "
+                  "testers.simd.lanes"},
+        BadConfig{"SameLane",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]', lanes: 2},\n"
+                  "  {from: 'r[0]', to: 'r[1]', lane: 1}]}\n",
+                  "test.yaml:4:3: topology.links.1: a second link from r[0] to r[1], beside that of topology.links.0"},
+        BadConfig{"LaneBesideAll",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]'}, {from: 'r[0]', to: "
+                  "'r[1]', lane: 0}]}\n",
+                  "topology.links.1: a second link from r[0] to r[1]"},
+        BadConfig{"LaneWithoutAWay",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]', lane: 0}, {line: "
+                  "'r[*]', lane: 1}]}\n",
+                  "topology.links: there is no way in lane 1 from r[1] to r[0]"},
+        BadConfig{
+            "TooManyLanes",
+            "topology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]', lane: 60, lanes: 5}]}\n",
+            "topology.links.0.lanes: expected lanes up to 63 at most, found 60 to 64"},
+        BadConfig{"LaneOfShapes",
+                  "topology: {shape: graph, nodes: [{name: r, count: 2}, {name: a, kind: cache}],\n"
+                  "  links: [{ring: 'r[*]'}, {from: 'r[*]', to: a, both: true, lane: 0, carries: [shapes]}]}\n",
+                  "topology.links.1.lane: packets have lanes, and other messages none"},
+        BadConfig{"BusWithAShortCut",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}, {name: b, kind: bus}],\n"
+                  "  links: [{from: 'r[*]', to: b, both: true}, {from: 'r[0]', to: 'r[1]'}]}\n",
+                  "test.yaml:4:46: topology.links.1: the bus b moves packets from resources to resources"},
+        BadConfig{"BusThatOneCannotHear",
+                  "topology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: bus}],\n"
+                  "  links: [{from: 'r[*]', to: b}, {from: b, to: 'r[0]'}]}\n",
+                  "topology.links: expected a link from r[1] to the bus b and one back, found 1 and 0"},
+        BadConfig{
+            "BusAndRouter",
+            "topology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: bus}, {name: x, kind: router}],\n"
+            "  links: [{from: 'r[*]', to: b, both: true}, {line: 'r[0], x', both: true}]}\n",
+            "topology.nodes.2.kind: all packets cross the bus b; expected no router and no other bus, found x"},
+        BadConfig{"NarrowWayToABus",
+                  "topology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: bus}],\n"
+                  "  links: [{from: 'r[*]', to: b, both: true, bytes_per_cycle: 8}]}\n",
+                  "topology.links.0.bytes_per_cycle: a bus is as wide for all"},
+        BadConfig{"BuffersOfABus",
+                  "topology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: bus, buffers: 2}],\n"
+                  "  links: [{from: 'r[*]', to: b, both: true}]}\n",
+                  "topology.nodes.1.buffers: packets wait for a bus at the resources"},
         BadConfig{"UnknownKind", "topology: {shape: graph, nodes: [{name: a, kind: ruoter}], links: []}\n",
                   "did you mean 'router'?"},
         BadConfig{"OtherNumber",

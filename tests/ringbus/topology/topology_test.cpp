@@ -190,7 +190,10 @@ TEST(Topology, PacketsLeaveByTheWireToTheirNextStop) {
           const std::uint32_t wire = t.ports(ResourceId(here)).out[t.out_port(p, ResourceId(here))];
           const bool by_bus = !t.hubs().empty() && t.hubs()[0] == Topology::Hub::kBus;
           const ResourceId next = t.next(p, ResourceId(here));
-          EXPECT_EQ(t.wires()[wire].to, by_bus ? ResourceId(5) : next) << enum_name(shape) << " at " << here;
+          ResourceId at = t.wires()[wire].to;
+          for (std::size_t hops = 0; t.routed() && at != next && hops < 12; ++hops)
+            at = t.wires()[t.ports(at).out[t.exit(at, next, d).port]].to;
+          EXPECT_EQ(at, by_bus ? ResourceId(5) : next) << enum_name(shape) << " at " << here;
         }
       }
     }
@@ -217,21 +220,61 @@ TEST(Topology, GroupsAreLinesBetweenBridges) {
   c.groups = 3;
   const Topology t(c);
   // Bridges 7, 8, 9 before resources 0 to 2, 3 to 4 and 5 to 6.
-  ASSERT_EQ(t.groups().size(), 3u);
   ASSERT_EQ(t.hubs().size(), 3u);
-  Route ends, group_of;
-  for (const Topology::Group& g : t.groups()) ends.insert(ends.end(), {g.first.value, g.last.value});
-  for (std::uint32_t r = 0; r < 7; ++r) group_of.push_back(t.group_of(ResourceId(r)));
-  EXPECT_EQ(ends, (Route{0, 2, 3, 4, 5, 6}));
-  EXPECT_EQ(group_of, (Route{0, 0, 0, 1, 1, 2, 2}));
-  const Packet p = packet(1, {4, 6});
-  EXPECT_EQ(t.skip(p, ResourceId(1)), 1u);  // resource 2, then the bridge
-  EXPECT_EQ(t.skip(p, ResourceId(2)), 0u);
-  EXPECT_EQ(t.skip_from_entrance(p, 1), 1u);
-  EXPECT_EQ(t.skip_from_entrance(p, 0), 1u);  // as far as its owner
-  EXPECT_TRUE(t.group_wants(p, 0) && t.group_wants(p, 1) && t.group_wants(p, 2));
-  EXPECT_FALSE(t.group_wants(packet(1, {6}), 1));
+  const auto way = [&](std::uint32_t from, std::uint32_t to) {
+    Route out;
+    for (ResourceId at(from); at.value != to; out.push_back(at.value))
+      at = t.wires()[t.ports(at).out[t.exit(at, ResourceId(to)).port]].to;
+    return out;
+  };
+  EXPECT_EQ(way(1, 4), (Route{2, 7, 8, 3, 4}));
+  EXPECT_EQ(way(4, 6), (Route{8, 9, 5, 6}));
+  EXPECT_EQ(way(6, 1), (Route{9, 7, 0, 1}));
   EXPECT_EQ(t.wires().size(), 7u + 3u + 3u);
+}
+
+TEST(Topology, LanesAreDirectionsWithWaysOfTheirOwn) {
+  TopologyConfig c = config(TopologyShape::kGraph, 4, Visit::kOwners);
+  c.tour = Tour::kNearest;
+  c.links.resize(2);
+  c.links[0].from = c.links[0].all_to = "";
+  c.links[0].ring = "r[*]";
+  c.links[1].ring = "r[3..0]";
+  c.links[0].lane = 0;
+  c.links[1].lane = 1;
+  const Topology t(c);
+  ASSERT_EQ(t.directions(), 2u);
+  const auto next = [&](std::uint32_t here, std::uint16_t lane) {
+    return t.next(packet(here, {0, 1, 2, 3}, lane), ResourceId(here)).value;
+  };
+  const auto along = [&](std::uint32_t here, std::uint32_t to, std::uint16_t lane) {
+    const ResourceId at(here);
+    return t.wires()[t.ports(at).out[t.exit(at, ResourceId(to), lane).port]].to.value;
+  };
+  for (std::uint32_t here = 0; here < 4; ++here) {
+    EXPECT_EQ(next(here, 0), (here + 1) % 4);
+    EXPECT_EQ(next(here, 1), (here + 3) % 4);
+    EXPECT_EQ(along(here, (here + 2) % 4, 0), (here + 1) % 4);
+    EXPECT_EQ(along(here, (here + 2) % 4, 1), (here + 3) % 4);
+  }
+}
+
+TEST(Topology, ADrawnBusHasItsPortsByResource) {
+  TopologyConfig c = config(TopologyShape::kGraph, 3);
+  GraphNode& bus = c.nodes.emplace_back();
+  bus.name = "b";
+  bus.kind = GraphNodeKind::kBus;
+  c.links.resize(1);
+  c.links[0].all_to = "";
+  c.links[0].from = "r[2], r[0], r[1]";
+  c.links[0].to = "b";
+  c.links[0].both = true;
+  const Topology t(c);
+  ASSERT_TRUE(t.broadcasts());
+  for (std::uint32_t r = 0; r < 3; ++r) {
+    EXPECT_EQ(t.wires()[t.ports(ResourceId(3)).in[r]].from.value, r);
+    EXPECT_EQ(t.wires()[t.ports(ResourceId(3)).out[r]].to.value, r);
+  }
 }
 
 TEST(Topology, ABusTakesTheLatencyOfOneLink) {

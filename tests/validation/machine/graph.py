@@ -29,9 +29,14 @@ class Drawing:
     def __init__(self, topology):
         self.numbers, self.groups, self.nodes = names_of(topology["nodes"])
         self.resources = sum(node.get("kind", "resource") == "resource" for node in self.nodes)
-        self.links = []  # (from, to, latency, width, depth)
+        self.links = []  # (from, to, latency, width, depth, lane); lane None: of all packets
         for link in topology["links"]:
-            self.add(link, topology["link"])
+            first, lanes = link.get("lane", "auto"), link.get("lanes", 1)
+            own = first != "auto" or lanes > 1
+            for i in range(lanes):
+                self.add(link, topology["link"], (0 if first == "auto" else first) + i if own else None)
+        self.lanes = max((link[5] + 1 for link in self.links if link[5] is not None), default=1)
+        self.meet = self.lanes > 1 and any(link[5] is None for link in self.links)
 
     def find(self, pattern):
         found = []
@@ -42,10 +47,12 @@ class Drawing:
                 found += [self.numbers[one] for one in group]
             else:
                 first, _, last = inside.partition("..")
-                found += [self.numbers[group[i]] for i in range(int(first), int(last or first) + 1)]
+                first, last = int(first), int(last or first)
+                step = 1 if first <= last else -1
+                found += [self.numbers[group[i]] for i in range(first, last + step, step)]
         return found
 
-    def add(self, link, all_links):
+    def add(self, link, all_links, lane):
         if "ring" in link or "line" in link:
             nodes = self.find(link.get("ring", link.get("line")))
             pairs = list(zip(nodes, nodes[1:]))
@@ -59,10 +66,10 @@ class Drawing:
         own = lambda key: all_links[key] if link.get(key, "auto") == "auto" else link[key]
         for pair in pairs:
             for a, b in [pair, pair[::-1]] if link.get("both") else [pair]:
-                self.links.append((a, b, own("latency_cycles"), own("bytes_per_cycle"), own("depth")))
+                self.links.append((a, b, own("latency_cycles"), own("bytes_per_cycle"), own("depth"), lane))
 
-    def ways(self):
-        """By node and destination: the link by which the shortest way begins."""
+    def ways(self, lane):
+        """By node and destination: the link by which the shortest way of a packet of the lane begins."""
         count = len(self.nodes)
         far = math.inf
         table = [[None] * count for _ in range(count)]
@@ -70,11 +77,13 @@ class Drawing:
             distance = [far] * count
             distance[start] = 0
             for _ in range(count):
-                for a, b, latency, *_ in self.links:
+                for a, b, latency, *_ in self.of(lane):
                     distance[b] = min(distance[b], distance[a] + latency)
             # The last link of each way: from the node that is nearest to the start, and of the lowest number.
             last = [None] * count
             for i, (a, b, latency, *_) in enumerate(self.links):
+                if self.links[i][5] not in (None, lane):
+                    continue
                 if b != start and distance[a] + latency == distance[b] < far:
                     if last[b] is None or (distance[a], a) < (distance[self.links[last[b]][0]], self.links[last[b]][0]):
                         last[b] = i
@@ -85,21 +94,24 @@ class Drawing:
                 table[start][end] = last[at]
         return table
 
+    def of(self, lane):
+        return [link for link in self.links if link[5] in (None, lane)]
+
 
 class GraphTopology(Topology):
     def __init__(self, config):
         t = config["topology"]
         self.drawing = Drawing(t)
         self.resources, self.shape = self.drawing.resources, "graph"
-        self.visit_all, self.bus, self.directions = t["visit"] == "all", False, 1
-        self.table = self.drawing.ways()
+        self.visit_all, self.bus, self.directions = t["visit"] == "all", False, self.drawing.lanes
+        self.tables = [self.drawing.ways(lane) for lane in range(self.directions)]
         depth = t["link"]["depth"]
         self.in_flight = depth if t["flow"] == "credits" else min(depth * self.resources, 256)
-        self.round = self.tour(t.get("tour", "names"))
+        self.rounds = [self.tour(t.get("tour", "names"), lane) for lane in range(self.directions)]
         links = self.drawing.links
         self.widths = sorted({link[3] for link in links})
         by = lambda node, end, other: sorted((i for i, link in enumerate(links) if link[end] == node),
-                                             key=lambda i: links[i][other])
+                                             key=lambda i: (links[i][5] or 0, links[i][other]))
         self.ins = [by(node, 1, 0) for node in range(len(self.drawing.nodes))]
         self.outs = [by(node, 0, 1) for node in range(len(self.drawing.nodes))]
         self.room = self.needs_room(t)
@@ -108,82 +120,81 @@ class GraphTopology(Topology):
     def node_cycles(self, node):
         return self.drawing.nodes[node].get("latency_cycles", 0)
 
-    def way(self, start, end):
+    def way(self, start, end, lane):
         at = start
         while at != end:
-            link = self.table[at][end]
+            link = self.tables[lane][at][end]
             yield link
             at = self.drawing.links[link][1]
 
-    def tour(self, rule):
+    def tour(self, rule, lane):
         """By resource: the one after it."""
         order = list(range(self.resources))
         if rule == "nearest":
             left, order = set(range(1, self.resources)), [0]
             while left:
                 cost = lambda to: sum(self.drawing.links[i][2] + self.node_cycles(self.drawing.links[i][0])
-                                      for i in self.way(order[-1], to))
+                                      for i in self.way(order[-1], to, lane))
                 order.append(min(left, key=lambda to: (cost(to), to)))
                 left.remove(order[-1])
         return {a: b for a, b in zip(order, order[1:] + order[:1])}
 
     def next(self, here, direction):
-        return self.round[here]
+        return self.rounds[direction][here]
 
     def stop(self, packet, here):
         """Where the packet goes from here."""
-        at = self.round[here]
+        at = self.next(here, packet.direction)
         while not self.visit_all and at != packet.owner and not self.wanted(packet, at):
-            at = self.round[at]
+            at = self.next(at, packet.direction)
         return at
 
     def skip(self, packet, here):
         return super().skip(packet, here) if self.visit_all else 0
 
     def port(self, packet, here):
-        return self.port_to(self.stop(packet, here), here)
+        return self.port_to(self.stop(packet, here), here, packet.direction)
 
-    def port_to(self, stop, here):
-        return self.outs[here].index(self.table[here][stop])
+    def port_to(self, stop, here, lane):
+        return self.outs[here].index(self.tables[lane][here][stop])
 
     def prepare(self, token, here):
         """For the next link to its stop: the time that it takes, and whether the next node passes it on at once."""
-        links = self.drawing.links
-        link = self.table[here][token.stop]
+        links, table = self.drawing.links, self.tables[token.packet.direction]
+        link = table[here][token.stop]
         token.cycles, at = token.sizes[links[link][3]], links[link][1]
         if at == token.stop or self.drawing.nodes[at].get("forward", "head") == "whole":
             return False
-        return links[self.table[at][token.stop]][3] == links[link][3]
+        return links[table[at][token.stop]][3] == links[link][3]
 
     def needs_room(self, t):
         """Whether resources have places for all packets, as credits or a bubble do not keep circles from filling up."""
         links, places = self.drawing.links, [link[4] + 1 for link in self.drawing.links]
         after = [set() for _ in links]
         come, leave = [set() for _ in range(self.resources)], [set() for _ in range(self.resources)]
-        for a in range(self.resources):
-            for b in range(self.resources):
-                if a == b or (self.visit_all and self.round[a] != b):
-                    continue
-                way = list(self.way(a, b))
-                for i, j in zip(way, way[1:]):
-                    after[i].add(j)
-                leave[a].add(way[0])
-                come[b].add(way[-1])
+        for lane in range(self.directions):
+            for a in range(self.resources):
+                for b in range(self.resources):
+                    if a == b or (self.visit_all and self.next(a, lane) != b):
+                        continue
+                    way = list(self.way(a, b, lane))
+                    for i, j in zip(way, way[1:]):
+                        after[i].add(j)
+                    leave[a].add((way[0], lane))
+                    come[b].add((way[-1], lane))
         for i, link in enumerate(links):
             at = link[1]
             if at < self.resources:
-                if i in come[at]:
-                    after[i] |= leave[at]
+                after[i] |= {j for j, lane in leave[at] if (i, lane) in come[at]}
             elif self.drawing.nodes[at].get("buffers", "auto") == "auto":
                 after[i] = set()
-        least, circle = math.inf, 0
+        least = math.inf
         for start in range(len(links)):
             best, heap = {}, [(0, 0, start)]
             while heap:
                 held, length, i = heapq.heappop(heap)
                 if i == start and length:
-                    if held < least:
-                        least, circle = held, length
+                    least = min(least, held)
                     break
                 if best.get(i, math.inf) < held:
                     continue
@@ -194,9 +205,10 @@ class GraphTopology(Topology):
         if least == math.inf:
             return False
         if t["flow"] == "credits":
-            return self.in_flight * self.resources >= least
-        one_ring = circle == len(links) and len(self.drawing.nodes) == self.resources
-        return not (t["flow"] == "bubble" and one_ring and all(link[4] >= 2 for link in links))
+            return self.in_flight * self.resources * (self.directions if self.drawing.meet else 1) >= least
+        rings = (not self.drawing.meet and len(self.drawing.nodes) == self.resources and
+                 all(len(self.drawing.of(lane)) == self.resources for lane in range(self.directions)))
+        return not (t["flow"] == "bubble" and rings and all(link[4] >= 2 for link in links))
 
 
 class Router:
@@ -236,7 +248,7 @@ class Router:
             port = self.in_ports[(self.turn + i) % len(self.in_ports)]
             while port.ready(now):
                 token = port.front()
-                out = self.out_ports[self.topology.port_to(token.stop, self.number)]
+                out = self.out_ports[self.topology.port_to(token.stop, self.number, token.packet.direction)]
                 if not out.has_place():
                     waits = True
                     break
@@ -250,7 +262,7 @@ def connect_graph(clock, topology, places):
     """The ports of each resource, and the routers behind them."""
     drawing = topology.drawing
     ends = [([None] * len(topology.ins[n]), [None] * len(topology.outs[n])) for n in range(len(drawing.nodes))]
-    for i, (a, b, latency, _, depth) in enumerate(drawing.links):
+    for i, (a, b, latency, _, depth, _) in enumerate(drawing.links):
         packets, credits = Channel(clock), Channel(clock)
         room = drawing.nodes[a].get("buffers", "auto") if a >= topology.resources else places
         if room == "auto" or (a < topology.resources and topology.room):

@@ -167,5 +167,10 @@ def draw_graph(r, resources, widths):
     if len(names) > 3:
         a, b = names[0], names[2]  # no neighbours on the ring
         links.append({"from": a, "to": b, "both": pick([True, False]), **own()})
+    for i in range(1, pick([1, 1, 1, 2, 3])):  # lanes side by side; the link across is for all, or for the first
+        if i == 1:
+            for link in links[:pick([1, 2])]:
+                link["lane"] = 0
+        links.append({"ring": ", ".join(names if r.random() < 0.5 else names[::-1]), "lane": i, **own()})
     return {"shape": "graph", "nodes": nodes, "links": links, "tour": pick(["names", "nearest", "nearest"]),
             "visit": pick(["owners", "owners", "all"])}

@@ -153,7 +153,7 @@ class Tile(Issues, Tests, Travel, Window):
         """In a graph: packets with another stop, whatever is visited."""
         moved = False
         for port in self.in_ports:
-            way = lambda token: self.out_ports[self.topology.port_to(token.stop, self.number)]
+            way = lambda token: self.out_ports[self.topology.port_to(token.stop, self.number, token.packet.direction)]
             while True:
                 seen = port.window(now, self.window)
                 place = next((i for i, token in enumerate(seen) if token.stop != self.number and

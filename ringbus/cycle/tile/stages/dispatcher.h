@@ -40,7 +40,8 @@ class Dispatcher {
   bool passes_by(const Token& token) const { return routed_ ? token.stop != id().value : token.skip > 0; }
   /// The port by which such a packet leaves that has come in by port `d`.
   OutPort& way_of(std::size_t d, const Token& token) {
-    return parts_.egress.port(routed_ ? parts_.machine.topology.exit(id(), ResourceId(token.stop)).port : d);
+    return parts_.egress.port(routed_ ? parts_.machine.topology.exit(id(), ResourceId(token.stop), token.lane).port
+                                      : d);
   }
   /// Prepares such a packet for its next link. Returns whether the next node sends it on when its head has come.
   bool pass_by(Token& token) const {

@@ -29,7 +29,7 @@ TileSettings tile_settings(const Config& config, ResourceId id, float scene_size
           config.rays.reads_per_cycle,
           has_cells(config) ? testers.simd.lanes : 0,
           config.rays.banks,
-          config.topology.shape == TopologyShape::kCentral,
+          is_central(config.topology),
           has_distributor(config),
           memory,
           config.topology.link,
