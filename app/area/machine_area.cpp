@@ -6,7 +6,9 @@
 #include <fmt/format.h>
 
 #include "core/config/costs.h"
+#include "core/config/graph/ring.h"
 #include "core/config/load/validate.h"
+#include "core/config/own_sections.h"
 #include "core/system/error.h"
 #include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/topology/wire_length.h"
@@ -54,20 +56,19 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     parts[part].mm2 += kib * cost(c, Cost::kSramArea);
   };
   for (std::int64_t r = 0; r < c.topology.resources; ++r)
-    add_units(parts[AreaPart::kUnits], c, scene, testers_of(c.testers, c.topology, r));
-  const double slots = n * static_cast<double>(c.rays.slots_per_resource);
+    add_units(parts[AreaPart::kUnits], c, scene, own_sections(c, r).testers);
+  const auto all = [&](const auto& of) { return static_cast<double>(sum_of_resources(c, of)); };
+  const auto slots = static_cast<double>(all_slots(c));
   store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
   if (c.rays.banks > 0)  // each bank has two ports
     parts[AreaPart::kRayStores].mm2 += parts[AreaPart::kRayStores].size * cost(c, Cost::kPortArea);
   if (topology.has_packets())
-    store(AreaPart::kCollections, n * static_cast<double>(c.collections.capacity) * kIdBytes / kKiB);
+    store(AreaPart::kCollections,
+          all([](const OwnSections& one) { return one.collections.capacity; }) * kIdBytes / kKiB);
   else
     store(AreaPart::kStacks, slots * kStackBytes / kKiB);
-  double buffers = 0;
-  for (std::int64_t r = 0; r < c.topology.resources; ++r)
-    buffers += static_cast<double>(shape_buffer_kib_of(c.memory.shape_buffer_kib, c.topology, r));
-  store(AreaPart::kShapeBuffers, buffers);
-  store(AreaPart::kL1, n * static_cast<double>(c.memory.l1_kib));
+  store(AreaPart::kShapeBuffers, all([](const OwnSections& one) { return one.memory.shape_buffer_kib; }));
+  store(AreaPart::kL1, all([](const OwnSections& one) { return one.memory.l1_kib; }));
   out.link_mm = c.area.link_mm ? static_cast<double>(*c.area.link_mm) : std::sqrt(parts.mm2() / n);
   const ringbus::ParcelPlan drawn = ringbus::plan_parcels(c.topology, c.memory.line_bytes);
   const std::int64_t caches = drawn.parts.caches.empty()
@@ -89,11 +90,17 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     const PartArea each = P::area(keys, costs_of(c));
     parts.declared[i] = {static_cast<double>(caches) * each.size, static_cast<double>(caches) * each.mm2};
   });
+  double ring_mm = 0;
+  for (const double mm : ringbus::stop_ring_lengths(c.topology, out.link_mm)) ring_mm += mm;
+  if (const auto ring = config::stop_ring_entry(c.topology))
+    ring_mm *= static_cast<double>(c.topology.links[*ring].bytes_per_cycle.value_or(c.topology.link.bytes_per_cycle)) /
+               static_cast<double>(c.topology.link.bytes_per_cycle);
   report::AreaOf& wires = parts[AreaPart::kWires];
   const std::int64_t width = c.topology.link.bytes_per_cycle;
-  wires.size = 8 * static_cast<double>(width) *
-               (wire_lengths(topology, width, out.link_mm) + drawn.lengths_without_packets(width, out.link_mm) +
-                (has_distributor(c) ? out.link_mm : 0));  // the bus to the testers
+  wires.size =
+      8 * static_cast<double>(width) *
+      (wire_lengths(topology, width, out.link_mm) + ring_mm + drawn.lengths_without_packets(width, out.link_mm) +
+       (has_distributor(c) ? out.link_mm : 0));  // the bus to the testers
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
   report::AreaOf& shaders = parts[AreaPart::kShaders];
   shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *

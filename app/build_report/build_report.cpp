@@ -147,7 +147,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   if (!result.resources.empty()) {
     add_ring(r, result, config, prepared.accel);
     add_links(r, result, config);
-    r.drawing = drawing(config.topology);
+    r.drawing = drawing(config.topology, true);
   }
   add_ranks(r, result);
   add_ray_queues(r, result, config);

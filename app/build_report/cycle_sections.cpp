@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include "app/build_report/memory_report.h"
+#include "app/build_report/ring_sections.h"
+#include "core/config/own_sections.h"
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
@@ -40,8 +42,8 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
   report::Units out;
   out.features = ringbus::features_of(config, accel);
   for (const auto [kind, use] : tile.units) out.kinds[kind] = unit_cycles(use, tile);
-  const auto has_lanes = [](const ResourceOverride& one) { return one.testers.simd.lanes > 1; };
-  if (config.testers.simd.lanes > 1 || std::ranges::any_of(config.topology.overrides, has_lanes)) {
+  const auto has_lanes = [](const OwnOf& one) { return one.testers != nullptr && one.testers->simd.lanes > 1; };
+  if (config.testers.simd.lanes > 1 || any_own(config.topology, has_lanes)) {
     report::LaneFill& fill = out.lane_fill.emplace();
     for (const auto [kind, use] : tile.units)
       if (use.lanes > 0) fill.kinds[kind] = ratio(use.passes, use.lanes);
@@ -51,7 +53,9 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
     out.second_reads = tile.second_reads;
     out.primitive_ray_reads = unit_cycles(tile.primitive_ray_reads, tile);
   }
-  if (config.rays.reads_per_cycle > 0 || config.rays.banks > 0) out.ray_reads = unit_cycles(tile.ray_reads, tile);
+  const auto bounds_reads = [](const OwnOf& one) { return one.keys->reads_per_cycle.value_or(0) > 0; };
+  if (config.rays.reads_per_cycle > 0 || config.rays.banks > 0 || any_own(config.topology, bounds_reads))
+    out.ray_reads = unit_cycles(tile.ray_reads, tile);
   out.distributor = tile.distributor;
   out.dispatch_busy = tile.dispatch.busy;
   out.dispatch_idle = cycles - tile.dispatch.busy;
@@ -96,19 +100,27 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
 void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config,
                 const accel::Accel& accel) {
   r.engine.cycles = c.cycles;
+  add_clocks(r, config);
   report::Epochs& epochs = r.engine.epochs.emplace();
   epochs.cycles_each = c.epochs.cycles_each;
   for (const std::uint64_t digest : c.epochs.digests) epochs.digests.push_back(fmt::format("{:016x}", digest));
   if (r.throughput) {
     const double rays = static_cast<double>(r.rays.completed);
     r.throughput->whole = rate(rays, c.cycles, config.engine.clock_mhz);
-    const auto slots = static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+    const auto slots = static_cast<std::uint64_t>(all_slots(config));
     if (const auto steady = ringbus::steady_state(c, r.rays.completed, slots))
       r.throughput->steady = rate(rays * steady->share, steady->cycles, config.engine.clock_mhz);
   }
   for (std::size_t i = 0; r.resources && i < r.resources->size(); ++i)
     add_to_resource((*r.resources)[i], c.tiles[i], c.cycles, config, accel);
-  for (std::size_t i = 0; r.links && i < r.links->size(); ++i) add_to_link((*r.links)[i], c.links[i], c.cycles);
+  if (const auto& stops = c.stops)
+    r.stops = report::RingStopsUse{stops->extra_rounds, stops->longest_ride, stops->longest_wait, stops->reservations,
+                                   stops->starts};
+  const bool clocks = several_clocks(config);
+  for (std::size_t i = 0; r.links && i < r.links->size(); ++i) {
+    add_to_link((*r.links)[i], c.links[i], c.cycles);
+    if (clocks) (*r.links)[i].clock = clock_of_link(config, c.links[i].mhz);
+  }
   r.rays.residence = report::distribution_of(c.residence);
   Log2Histogram ages;
   for (const ringbus::cycle::TileResult& tile : c.tiles) ages += tile.collection_ages;

@@ -7,6 +7,7 @@
 
 #include "app/area/machine_area.h"
 #include "core/config/costs.h"
+#include "core/config/own_sections.h"
 #include "core/config/write.h"
 #include "report/text/ratio.h"
 #include "ringbus/cycle/parcels/parcel_plan.h"
@@ -31,8 +32,8 @@ class Account {
         link_mm_(link_mm),
         costs_(costs_of(config)),
         memory_times_(memory_times),
-        rays_kib_(static_cast<double>(config.rays.slots_per_resource) / 16 / static_cast<double>(own_testers(config))) {
-  }
+        rays_kib_(mean([](const OwnSections& one) { return one.rays.slots_per_resource; }) / 16 /
+                  static_cast<double>(own_testers(config))) {}
 
   report::EnergyParts take() {
     tests();
@@ -66,7 +67,7 @@ class Account {
   void stores() {
     if (r_.packets)
       access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(r_.packets->counts.packet_rays),
-             kIdBytes * static_cast<double>(c_.collections.capacity) / 1024);
+             kIdBytes * mean([](const OwnSections& one) { return one.collections.capacity; }) / 1024);
     const ShapeBufferCounts& buffers = r_.memory->shape_buffers.counts;
     access(EnergyPart::kShapeBuffers, kPlaceBytes * static_cast<double>(buffers.hits + buffers.merged + buffers.misses),
            buffer_kib());
@@ -91,11 +92,13 @@ class Account {
   void packets() {
     const ringbus::Topology topology(c_.topology);
     const std::vector<config::Graph::Link> others = drawn_.without_packets();  // behind those of packets
+    const std::vector<double> of_ring = ringbus::stop_ring_lengths(c_.topology, link_mm_);
     for (std::size_t i = 0; i < r_.links->size(); ++i) {
       const auto bytes = static_cast<double>((*r_.links)[i].bytes.value_or(0));
       const std::size_t wires = topology.wires().size();
-      const double mm = i < wires ? wire_length(topology, topology.wires()[i], link_mm_)
-                                  : drawn_.length(others.at(i - wires), link_mm_);
+      const double mm = i < wires          ? wire_length(topology, topology.wires()[i], link_mm_)
+                        : !of_ring.empty() ? of_ring.at(i - wires)
+                                           : drawn_.length(others.at(i - wires), link_mm_);
       parts_[EnergyPart::kPorts].add(bytes, pj(Cost::kHop));
       parts_[EnergyPart::kWires].add(bytes * mm, pj(Cost::kWire));
     }
@@ -152,14 +155,17 @@ class Account {
   }
 
   double l2_kib() const { return static_cast<double>(c_.memory.l2_kib) / static_cast<double>(c_.memory.l2_banks); }
-  double l1_kib() const { return static_cast<double>(c_.memory.l1_kib); }
+  double l1_kib() const {
+    return mean([](const OwnSections& one) { return one.memory.l1_kib; });
+  }
   double line_bytes() const { return static_cast<double>(c_.memory.line_bytes); }
-  /// The mean of all resources, as the report counts their accesses together.
   double buffer_kib() const {
-    double sum = 0;
-    for (std::int64_t r = 0; r < c_.topology.resources; ++r)
-      sum += static_cast<double>(shape_buffer_kib_of(c_.memory.shape_buffer_kib, c_.topology, r));
-    return sum / static_cast<double>(c_.topology.resources);
+    return mean([](const OwnSections& one) { return one.memory.shape_buffer_kib; });
+  }
+  /// The mean of all resources, as the report counts their accesses together.
+  template <class Of>
+  double mean(const Of& of) const {
+    return static_cast<double>(sum_of_resources(c_, of)) / static_cast<double>(c_.topology.resources);
   }
 
   const report::Report& r_;

@@ -32,10 +32,10 @@
 #include "report/text/ratio.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/memory/memory_trace.h"
-#include "ringbus/cycle/rings/ring_engine.h"
+#include "ringbus/cycle/traffic/ring_engine.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
-#include "ringbus/cycle/traffic/traffic_settings.h"
 #include "ringbus/native/native_engine.h"
+#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::app {
 
@@ -116,8 +116,10 @@ report::Report run_network(const Prepared& p, const InterruptScope& interrupt, b
     if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
   };
   const Config& c = p.config();
-  if (!config::stop_ring_entry(c.topology)) return traffic_report(p, ringbus::run_traffic(c, options));
-  const auto clock = ringbus::cycle::network_clock(c.clocks, c.engine.clock_mhz);
+  const auto ring = config::stop_ring_entry(c.topology);
+  if (!ring) return traffic_report(p, ringbus::run_traffic(c, options));
+  const auto clock =
+      ringbus::MachineClocks(c.engine.clock_mhz, c.clocks.synchroniser_cycles).from_core(c.topology.links[*ring].mhz);
   return traffic_report(p, ringbus::run_ring_traffic(c.topology, c.workload.traffic, clock, c.image.seed, options));
 }
 

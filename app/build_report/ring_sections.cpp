@@ -5,11 +5,15 @@
 
 #include "app/build_report/nodes_section.h"
 #include "core/config/config.h"
+#include "core/config/graph/clocks.h"
 #include "core/config/graph/graph.h"
+#include "core/config/graph/ring.h"
 #include "core/types/enum_names.h"
 #include "core/types/ray.h"
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"
+#include "ringbus/time/clock_ratio.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::app {
 
@@ -110,14 +114,22 @@ void add_ray_queues(report::Report& r, const ringbus::RunResult& result, const C
 
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
+  const ringbus::Topology topology(config.topology);
+  std::optional<std::uint64_t> ring;  // the number of a ring with stops in the drawing
+  if (config::stop_ring_entry(config.topology)) ring = drawing(config.topology, true)->size() - 1;
   for (const ringbus::LinkResult& link : result.links) {
     const ringbus::LinkStatistics& s = link.statistics;
-    r.links->push_back({link.from.value, link.to.value, link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
+    const bool port = ring && r.links->size() < topology.wires().size();
+    const auto number = [&](ResourceId node) -> std::uint64_t {
+      return port && node.value >= topology.resources() ? *ring : node.value;
+    };
+    r.links->push_back({number(link.from), number(link.to), link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
                         s.occupancy_max, s.refusals});
     report::Link& out = r.links->back();
     if (config.faults.links.any()) out.faults = link.faults;
     if (config.engine.kind == EngineKind::kCycle) continue;
-    out.queue = enum_name(config.topology.link.queue);
+    const auto& own = topology.wires()[r.links->size() - 1].queue;
+    out.queue = enum_name(own.value_or(config.topology.link.queue));
     out.sent_at_once = ratio(s.packets, s.batches);
     out.received_at_once = ratio(s.packets, s.receives);
     out.full_stalls = s.full_stalls;
@@ -131,7 +143,31 @@ void add_links(report::Report& r, const ringbus::RunResult& result, const Config
   }
 }
 
-std::optional<std::vector<report::DrawnNode>> drawing(const TopologyConfig& topology) {
+bool several_clocks(const Config& config) {
+  return config::used_clocks(config.topology, config.engine.clock_mhz).size() > 1;
+}
+
+double nanoseconds(const Config& config, double cycles) {
+  return cycles * 1000 / static_cast<double>(config.engine.clock_mhz);
+}
+
+std::string clock_of_link(const Config& config, std::int64_t mhz) {
+  for (const config::UsedClock& clock : config::used_clocks(config.topology, config.engine.clock_mhz))
+    if (mhz != 0 && clock.mhz == mhz) return clock.name;
+  return "core";
+}
+
+void add_clocks(report::Report& r, const Config& config) {
+  const std::vector<config::UsedClock> clocks = config::used_clocks(config.topology, config.engine.clock_mhz);
+  if (clocks.size() < 2 || !r.engine.cycles) return;
+  r.engine.nanoseconds = nanoseconds(config, static_cast<double>(*r.engine.cycles));
+  r.clocks.emplace();
+  for (const config::UsedClock& clock : clocks)
+    r.clocks->push_back({clock.name, clock.mhz,
+                         ringbus::ClockRatio(config.engine.clock_mhz, clock.mhz, 0).to_network(*r.engine.cycles)});
+}
+
+std::optional<std::vector<report::DrawnNode>> drawing(const TopologyConfig& topology, bool rays) {
   if (topology.shape != TopologyShape::kGraph) return std::nullopt;
   std::vector<config::GraphIssue> issues;  // none in a configuration that has run
   std::vector<report::DrawnNode> out;
@@ -142,6 +178,7 @@ std::optional<std::vector<report::DrawnNode>> drawing(const TopologyConfig& topo
     one.x_mm = node.at.x;
     one.y_mm = node.at.y;
   }
+  if (rays && config::stop_ring_entry(topology)) out.push_back({"ring"});  // to which the ports of the stops lead
   return out;
 }
 

@@ -38,21 +38,21 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
   out.latency = report::latency_of(result.latency);
   out.least_latency = result.latency.quantile(0);
   const TrafficConfig& asked = config.workload.traffic;
-  const std::uint64_t window = result.network_window;
   const double seconds = static_cast<double>(result.window_end - result.window_begin) /
                          (static_cast<double>(config.engine.clock_mhz) * 1e6);
   out.gigabytes_per_second =
       ratio(static_cast<double>(result.accepted) * static_cast<double>(asked.packet_bytes + asked.reply_bytes),
             seconds * 1e9);
-  std::uint64_t busiest = 0;
-  for (const std::uint64_t busy : result.busy_in_window) {
-    out.flit_hops += busy;  // a flit a cycle
-    busiest = std::max(busiest, busy);
+  double busiest = 0, windows = 0;
+  for (std::size_t i = 0; i < result.busy_in_window.size(); ++i) {
+    out.flit_hops += result.busy_in_window[i];  // a flit a cycle
+    busiest = std::max(busiest, ratio(result.busy_in_window[i], result.link_windows[i]));
+    windows += static_cast<double>(result.link_windows[i]);
   }
   if (const auto& stops = result.stops)
     out.stops = report::RingStopsUse{stops->extra_rounds, stops->longest_ride, stops->longest_wait, stops->reservations,
                                      stops->starts};
-  out.link_utilisation = {ratio(out.flit_hops, window * result.links.size()), ratio(busiest, window)};
+  out.link_utilisation = {ratio(static_cast<double>(out.flit_hops), windows), busiest};
   return out;
 }
 
@@ -69,7 +69,8 @@ std::vector<report::Link> links(const Config& config, const ringbus::TrafficResu
     one.to = link.to;
     one.depth = static_cast<std::uint64_t>(depth);
     one.packets = result.link_packets[i];
-    const std::uint64_t cycles = result.network_cycles;
+    const std::uint64_t cycles = result.link_cycles[i];
+    if (several_clocks(config)) one.clock = clock_of_link(config, link.mhz);
     one.utilisation = ratio(link.use.busy, cycles);
     one.cycles = report::LinkCycles{link.use.busy, link.use.stalled, cycles - link.use.busy - link.use.stalled};
   }
@@ -89,11 +90,13 @@ report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficRe
   r.scene.name = "none";
   r.engine.kind = enum_name(config.engine.kind);
   r.engine.cycles = result.cycles;
+  add_clocks(r, config);
   r.engine.deterministic = true;
   r.engine.reason = "virtual time: nothing depends on the host's threads";
   r.links = links(config, result);
   r.drawing = drawing(config.topology);
   r.traffic = traffic(config, result);
+  if (several_clocks(config)) r.traffic->mean_nanoseconds = nanoseconds(config, r.traffic->latency.mean);
   r.digest.hits = HitsDigest().hex();  // the digest of no rays
   r.host.threads = result.threads;
   r.host.wall_seconds = result.wall_seconds;

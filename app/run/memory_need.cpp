@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "accel/traverse/hit_oracle.h"
+#include "core/config/own_sections.h"
 #include "core/system/error.h"
 #include "core/system/process_memory.h"
 #include "report/csv/ray_csv.h"
@@ -63,7 +64,7 @@ std::uint64_t build_bytes(const scene::Scene& scene) {
 }
 
 std::uint64_t paths_in_flight(const Config& config) {
-  const auto slots = static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+  const auto slots = static_cast<std::uint64_t>(all_slots(config));
   return std::min(slots, frame_paths(config));
 }
 

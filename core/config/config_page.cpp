@@ -74,7 +74,10 @@ std::string config_markdown() {
       if (section) out += fmt::format("\n{}\n", schema["description"].get<std::string>());
       out += kTableHead;
     }
-    if (!section) out += row(path, schema);
+    if (!section)
+      out += row(path, schema);
+    else if (schema["additionalProperties"].is_object())
+      out += row(path + ".NAME", schema["additionalProperties"]);
   });
   return out;
 }

@@ -95,17 +95,23 @@ inline constexpr Condition kReplies{[](const C& c, const S&) { return c.workload
 inline constexpr Condition kQueuedStops{
     [](const C& c, const S&) { return !config::stop_ring_entry(c.topology).has_value(); },
     "nothing waits on a ring with stops"};
+inline constexpr Condition kQueuedPorts{
+    [](const C& c, const S&) { return meets_rays(c) || !config::stop_ring_entry(c.topology).has_value(); },
+    "nothing waits on a ring with stops"};
 inline constexpr Condition kSeveralParts{
-    [](const C& c, const S&) { return !config::stop_ring_entry(c.topology).has_value(); },
+    [](const C& c, const S&) { return meets_rays(c) || !config::stop_ring_entry(c.topology).has_value(); },
     "the stops of a ring are clocked together, on one thread"};
 inline constexpr Condition kNetworkClock{[](const C& c, const S&) {
-                                           return c.workload.kind == WorkloadKind::kTraffic &&
+                                           return c.engine.kind == EngineKind::kCycle &&
                                                   c.topology.shape == TopologyShape::kGraph;
                                          },
                                          "the network has the clock of the resources"};
-inline constexpr Condition kTwoClocks{
-    [](const C& c, const S&) { return c.clocks.noc.value_or(c.engine.clock_mhz) != c.engine.clock_mhz; },
-    "the network has the clock of the resources"};
+inline constexpr Condition kTwoClocks{[](const C& c, const S&) {
+                                        const auto other = [](const auto& one) { return one.mhz != 0; };
+                                        return std::any_of(c.topology.nodes.begin(), c.topology.nodes.end(), other) ||
+                                               std::any_of(c.topology.links.begin(), c.topology.links.end(), other);
+                                      },
+                                      "the network has the clock of the resources"};
 inline constexpr Condition kSeededScene{
     [](const C& c, const S&) { return c.scene.builtin && !is_generated(c, BuiltinScene::kCornell); },
     "the scene is not drawn at random"};
@@ -205,13 +211,12 @@ inline constexpr Condition kAnyHitUnits{asks_units, "no units decide any-hit cal
 inline constexpr Condition kAnyHitShaders{
     [](const C& c, const S& s) { return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kShader; },
     "no shader worker decides any-hit calls"};
-inline constexpr Condition kVectors{
-    [](const C& c, const S&) {
-      return has_many_lanes(c.testers) ||
-             std::any_of(c.topology.overrides.begin(), c.topology.overrides.end(),
-                         [](const ResourceOverride& one) { return has_many_lanes(one.testers); });
-    },
-    "units have one lane"};
+inline constexpr Condition kVectors{[](const C& c, const S&) {
+                                      return has_many_lanes(c.testers) || any_own(c.topology, [](const OwnOf& one) {
+                                               return one.testers != nullptr && has_many_lanes(*one.testers);
+                                             });
+                                    },
+                                    "units have one lane"};
 
 inline constexpr Condition kOwnCaches{[](const C& c, const S&) { return c.memory.l1_kib > 0; },
                                       "resources have no caches of their own"};

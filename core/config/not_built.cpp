@@ -146,10 +146,14 @@ std::vector<Refusal> refusals(const Config& config) {
     if (!lacks(row, engine)) continue;
     check(values, row, std::string(row.key));
     if (!row.key.starts_with("testers.")) continue;
-    const Json& overrides = values["topology"]["overrides"];
-    for (std::size_t i = 0; i < overrides.size(); ++i)
-      if (*find(overrides[i], row.key) != *find(values, row.key))  // not inherited from the whole machine
-        check(overrides[i], row, fmt::format("topology.overrides.{}.{}", i, row.key));
+    for (const char* list : {"overrides", "nodes"}) {
+      const Json& items = values["topology"][list];
+      for (std::size_t i = 0; i < items.size(); ++i) {
+        const Json* own = find(items[i], row.key);
+        if (own != nullptr && *own != *find(values, row.key))  // not inherited from the whole machine
+          check(items[i], row, fmt::format("topology.{}.{}.{}", list, i, row.key));
+      }
+    }
   }
   return out;
 }

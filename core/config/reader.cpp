@@ -347,12 +347,44 @@ void Reader::vary(std::string_view key, std::map<std::string, std::vector<std::s
   }
 }
 
+/// The map's other members, as numbers.
+void Reader::others(std::map<std::string, std::int64_t>& value, IntRange range, const char* unit, const char*) {
+  const std::vector<std::string> known = scopes_.back().known;
+  for (const Member& member : scopes_.back().node->members) {
+    if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
+    const Visit visit(*this, member.key);
+    if (const auto number = integer_of(member.value, range))
+      value[member.key] = *number;
+    else
+      wrong(member.value, expected_integer(range, unit));
+  }
+}
+
+/// Says why a key of the whole machine is none of one resource, or under which names its numbers stand there. Absent if
+/// it is no key at all.
+std::optional<std::string> Reader::shared_text(const std::string& key) {
+  std::vector<std::string> own, of_section;
+  for_each_own_key([&](const auto& row) {
+    own.emplace_back(row.name);
+    if (std::string_view(row.path).starts_with(key + ".")) of_section.emplace_back(row.name);
+  });
+  if (!of_section.empty())
+    return fmt::format("what a resource has of `{}` stands here without the section; expected {}", key,
+                       join(of_section));
+  const auto path = config_path_ending_in(key);
+  if (!path) return std::nullopt;
+  return fmt::format("{} is the same for all resources: {}; expected testers, {}", *path, shared_because(*path),
+                     join(own));
+}
+
 void Reader::report_unknown(const Scope& frame) {
   for (const Member& member : frame.node->members) {
     if (std::find(frame.known.begin(), frame.known.end(), member.key) != frame.known.end()) continue;
     path_.push_back(member.key);
     std::string message = "unknown key";
-    if (const auto near = nearest_name(member.key, frame.known)) {
+    if (const auto shared = frame.own ? shared_text(member.key) : std::nullopt) {
+      message = *shared;
+    } else if (const auto near = nearest_name(member.key, frame.known)) {
       message += fmt::format("; did you mean '{}'?", *near);
     } else if (const auto elsewhere = config_path_ending_in(member.key)) {
       message += fmt::format("; did you mean '{}'?", *elsewhere);

@@ -73,7 +73,16 @@ class Reader : public RowVisitor<Reader> {
   template <class T>
   void section(std::string_view key, std::optional<T>& value, const char*) {
     const Visit visit(*this, key);
-    if (visit.node) read(*visit.node, value.emplace());
+    if (!visit.node) return;
+    T& made = value.emplace();
+    if constexpr (std::is_same_v<T, TestersConfig>) made = base_testers_;
+    read(*visit.node, made);
+  }
+  template <class Key, class T>
+  Row own_key(const Key& row, T& value) {
+    scopes_.back().own = true;
+    on_field_or_auto(row.name, value, row.range, row.unit, row.meaning);
+    return {};
   }
 
   void on_section_or_number(std::string_view key, TesterUnits& value, const char*);
@@ -105,11 +114,13 @@ class Reader : public RowVisitor<Reader> {
   void effects(std::string_view key, ShadingConfig::Effects& value, const char*);
   void workload(std::string_view key, WorkloadConfig& value, const char*);
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*);
+  void others(std::map<std::string, std::int64_t>& value, IntRange range, const char* unit, const char*);
 
  private:
   struct Scope {
     const Node* node;
     std::vector<std::string> known;  ///< keys asked for
+    bool own = false;                ///< it says in what a resource differs
   };
 
   /// Looks a key up in the innermost map and extends the path while its value is read.
@@ -141,6 +152,7 @@ class Reader : public RowVisitor<Reader> {
   void vector(std::string_view key, Vec3& value, RealRange range, const char* unit, const char* expected);
   std::optional<std::size_t> choose(const Node& node, const std::vector<std::string>& names);
   void report_unknown(const Scope& frame);
+  static std::optional<std::string> shared_text(const std::string& key);
   /// A map has the key, unless that is empty.
   void require(const Node& node, std::string_view key);
   void wrong(const Node& node, const std::string& expected, const std::string& hint = "");

@@ -9,7 +9,7 @@
 namespace carousel {
 
 /// The keys of one class of parts, which the search for the bottleneck relaxes together. The rows of these keys say so
-/// (core/config/fields/row.h).
+/// (core/config/fields/field.h).
 struct Relaxation {
   std::string part;    ///< the class, as the report names it
   std::string action;  ///< "twice memory.l2_kib": its keys and how they change

@@ -29,6 +29,11 @@ class RowWalk {
   auto field_or_auto(std::string_view key, std::optional<T>& value, const Args&...) {
     return self().rest(path_of(key), value);
   }
+  /// A number of one resource goes by the key of the whole machine.
+  template <class Key, class T>
+  auto own_key(const Key& row, T& value) {
+    return self().rest(std::string(row.path), value);
+  }
   template <class T>
   auto choice(std::string_view key, T& value, const char*) {
     return self().rest(path_of(key), value);
@@ -62,6 +67,8 @@ class RowWalk {
   void effects(std::string_view, ShadingConfig::Effects&, const char*) {}
   void workload(std::string_view, WorkloadConfig&, const char*) {}
   void vary(std::string_view, std::map<std::string, std::vector<std::string>>&, const char*) {}
+  template <class... Rest>
+  void others(std::map<std::string, std::int64_t>&, const Rest&...) {}
 
  protected:
   bool in_override() const { return in_override_; }

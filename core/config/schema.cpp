@@ -32,7 +32,7 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     Json out{{"type", "object"}};
     if (*meaning) out["description"] = meaning;
     out["properties"] = std::move(writer.properties_);
-    out["additionalProperties"] = false;
+    out["additionalProperties"] = std::move(writer.others_);
     return out;
   }
 
@@ -155,6 +155,11 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     if (brought.empty()) plugin({{"type", "string"}, {"minLength", 1}}, any_options);
     put(key, {{"anyOf", std::move(all)}, {"default", "rays"}}, "", meaning);
   }
+  void others(std::map<std::string, std::int64_t>&, IntRange range, const char* unit, const char* meaning) {
+    others_ = integer(range);
+    others_["unit"] = unit;
+    others_["description"] = meaning;
+  }
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>&, const char* meaning) {
     const Json scalar{{"type", {"string", "number", "boolean"}}};
     put(key,
@@ -199,7 +204,7 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     properties_[std::string(key)] = std::move(schema);
   }
 
-  Json properties_ = Json::object();
+  Json properties_ = Json::object(), others_ = false;
 };
 
 using VisitKey = std::function<void(const std::string&, const Json&)>;

@@ -59,6 +59,11 @@ class JsonWriter : public RowVisitor<JsonWriter> {
   void on_field_or_auto(std::string_view key, std::optional<Vec3>& value, RealRange, const char*, const char*) {
     put(key, value ? Json{shortest(value->x), shortest(value->y), shortest(value->z)} : Json("auto"));
   }
+  template <class Key>
+  Row own_key(const Key& row, std::optional<std::int64_t>& value) {
+    if (value) put(row.name, *value);
+    return {};
+  }
   template <class E>
   void on_choice(std::string_view key, E& value, const char*) {
     put(key, enum_name(value));
@@ -109,6 +114,9 @@ class JsonWriter : public RowVisitor<JsonWriter> {
   }
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*) {
     put(key, value);
+  }
+  void others(std::map<std::string, std::int64_t>& value, IntRange, const char*, const char*) {
+    for (const auto& [name, number] : value) put(name, number);
   }
 
  private:

@@ -47,6 +47,7 @@ struct Report {
   std::optional<std::vector<Plugin>> plugins;
   SceneSummary scene;
   Engine engine;
+  std::optional<std::vector<ClockUse>> clocks;
   Rays rays;
   std::optional<RasterCounts> raster;
   std::optional<Sampled> sampled;
@@ -61,6 +62,7 @@ struct Report {
   std::optional<std::vector<Resource>> resources;
   std::optional<std::vector<DrawnNode>> drawing;
   std::optional<std::vector<Link>> links;
+  std::optional<RingStopsUse> stops;
   std::optional<std::vector<Rank>> ranks;
   std::optional<std::vector<RankLink>> rank_links;
   std::optional<Memory> memory;
@@ -95,6 +97,7 @@ void describe(V& v, const Report& r) {
   v.section("plugins", r.plugins, "each of engine.plugins; code of others, of which the results depend");
   v.section("scene", r.scene, "scene that was rendered");
   v.section("engine", r.engine, "engine that simulated the machine");
+  v.section("clocks", r.clocks, "each clock, where parts of the machine go by several");
   v.section("rays", r.rays, "rays; emitted = completed + lost");
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");
   v.section(
@@ -112,6 +115,7 @@ void describe(V& v, const Report& r) {
   v.section("resources", r.resources, "each resource");
   v.section("drawing", r.drawing, "each node of a graph, by the numbers that links[].from and to have");
   v.section("links", r.links, "each link");
+  v.section("stops", r.stops, "stops of a ring without queues, when packets of rays travel on it");
   v.section("ranks", r.ranks, "each process of a run with engine.transport: mpi");
   v.section("rank_links", r.rank_links, "messages from each of them to each other");
   v.section("memory", r.memory, "caches and memory of the simulated machine");

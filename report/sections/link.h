@@ -29,6 +29,7 @@ struct Link {
   std::optional<double> sent_at_once{}, received_at_once{};
   std::optional<std::uint64_t> full_stalls{}, empty_stalls{};
   std::optional<LinkFaultCounts> faults{};
+  std::optional<std::string> clock{};
 };
 
 template <class V>
@@ -54,6 +55,7 @@ void describe(V& v, const Link& r) {
           "mean of the packets of a reception, where it brought any (native)");
   v.field("full_stalls", r.full_stalls, "sends", "sends of which the queue did not take all packets (native)");
   v.field("empty_stalls", r.empty_stalls, "receptions", "receptions that found no packet (native)");
+  v.field("clock", r.clock, "", "name of its clock, where there are several");
   v.section("faults", r.faults, "faults of frames and acknowledgements, with faults.links");
 }
 

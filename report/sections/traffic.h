@@ -45,6 +45,7 @@ struct Traffic {
   std::uint64_t flit_hops = 0;
   double accepted_of_links = 0, gigabytes_per_second = 0;
   std::uint64_t least_latency = 0;
+  std::optional<double> mean_nanoseconds{};
   std::optional<RingStopsUse> stops;
 };
 
@@ -68,6 +69,7 @@ void describe(V& v, const Traffic& r) {
   v.field("zero_load_latency", r.zero_load_latency, "cycles",
           "mean latency of the measured packets if each were alone");
   v.section("latency", r.latency, "latency of the measured packets, from creation to delivery of the last flit");
+  v.field("mean_nanoseconds", r.mean_nanoseconds, "ns", "mean latency as a time, where there are several clocks");
   v.field("least_latency", r.least_latency, "cycles",
           "the least of these latencies; from 2048 cycles on, the least of its class");
   v.section("link_utilisation", r.link_utilisation,

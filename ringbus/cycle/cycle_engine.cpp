@@ -36,7 +36,9 @@ class CycleRun {
     bool stopped = false;
     WakeupTable wakeups(parts);
     machine_.connect(wakeups);
-    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle at) {
+    const ClockRatio to_fastest = machine_.network().clocks().to_fastest(0);
+    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle reached) {
+      const Cycle at = to_fastest.before(reached);
       stopped = options_.stop.stop_requested();
       note_progress(at);
       if (machine_.recorder() != nullptr) machine_.recorder()->limit();
@@ -143,15 +145,12 @@ class CycleRun {
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port_number) {
       const OutPort& port = machine_.out_of(wire.from)[port_number];
       c.hops += port.packets();
-      c.links.push_back({wire.from.value,
-                         wire.to.value,
-                         {port.busy(end), port.stalled()},
-                         machine_.network().far(c.links.size()).queue,
-                         machine_.network().near(c.links.size()).packets.bytes().sent});
+      c.links.push_back(machine_.use_of_link(c.links.size(), port_number, end));
       LinkStatistics s;
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(wire.depth), s, {}, port.faults()});
     });
+    add_ring(end, out);
     add_parcels(end, out);
     c.memories = machine_.memory().memories().size();
     if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->bytes();
@@ -171,6 +170,24 @@ class CycleRun {
       check_lines(machine_, c.bytes, config_.memory);
     }
     return out;
+  }
+
+  /// The links between the stops of a ring follow the ports of its stops.
+  void add_ring(Cycle end, RunResult& out) const {
+    const RingHub* const ring = machine_.network().ring();
+    if (ring == nullptr) return;
+    CycleResult& c = *out.cycle;
+    c.stops = ring->use();
+    for (std::size_t i = 0; i < ring->graph().links.size(); ++i) {
+      const config::Graph::Link& drawn = ring->graph().links[i];
+      const RingLinks::Use& use = ring->links().all()[i];
+      const Cycle busy = machine_.network().clocks().from_core(drawn.mhz).before(use.busy);
+      const std::uint64_t bytes = use.busy * static_cast<std::uint64_t>(drawn.bytes_per_cycle);
+      c.links.push_back({drawn.from, drawn.to, {std::min(busy, end), 0}, {}, bytes, drawn.mhz});
+      LinkStatistics s;
+      s.packets = use.packets;
+      out.links.push_back({ResourceId(drawn.from), ResourceId(drawn.to), 0, s, {}, {}});
+    }
   }
 
   /// What links carried beside packets: it adds to the links that packets use, and the others follow these.
@@ -250,8 +267,10 @@ class CycleRun {
   ClassUse link_use() const {
     const bool bus = is_bus(config_.topology);
     ClassUse out{"link_bandwidth", bus ? 1.0 : static_cast<double>(machine_.shared().topology.wires().size()), 0};
+    std::size_t number = 0;
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
-      if (!bus || wire.from.value < machine_.resources().size()) out.busy += machine_.out_of(wire.from)[port].busy();
+      const std::size_t link = number++;
+      if (!bus || wire.from.value < machine_.resources().size()) out.busy += machine_.busy_of_link(link, port);
     });
     if (machine_.parcels() == nullptr) return out;
     const ParcelPlan& plan = machine_.parcels()->plan();

@@ -33,9 +33,11 @@ NativeMachine::NativeMachine(const Config& config, const accel::Accel& accel, fl
   shared.control.queue_groups(config.rays.queue.kind, static_cast<std::size_t>(config.rays.queue.depth));
   if (!share.alone()) gate = std::make_unique<RankGate>(config, *transport, shared, completed);
   if (shared.topology.routed()) stops.resize(shared.packets.size());
-  Config of_wire = config;  // the links of a graph may differ in depth
+  Config of_wire = config;  // the links of a graph may differ
   for (const Topology::Wire& wire : shared.topology.wires()) {
     if (wire.depth > 0) of_wire.topology.link.depth = wire.depth;
+    of_wire.topology.link.queue = wire.queue.value_or(config.topology.link.queue);
+    if (wire.queue) require_parties(*wire.queue, "topology.links.queue", Parties::kOne, Parties::kOne);
     if (gate && !gate->here(wire)) {
       links.push_back(gate->make_link(static_cast<std::uint32_t>(links.size()),
                                       static_cast<std::size_t>(config.topology.link.depth)));

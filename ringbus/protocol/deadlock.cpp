@@ -1,5 +1,7 @@
 #include "ringbus/protocol/deadlock.h"
 
+#include <utility>
+
 #include <fmt/format.h>
 
 #include "ringbus/resource/storage_rule.h"
@@ -32,16 +34,23 @@ std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
 
 std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel& accel) {
   const std::int64_t needed = minimum_capacity(config, accel.width, accel.max_depth);
-  if (config.collections.capacity >= needed) return {};
-  ConfigIssue issue;
-  issue.key_path = "collections.capacity";
-  issue.message = fmt::format(
-      "expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill", needed,
-      fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep{}", config.packets.rays, accel.width,
-                  accel.max_depth,
-                  config.bundles.size > 0 ? fmt::format(", bundles of {} rays", config.bundles.size) : ""),
-      config.collections.capacity);
-  return {issue};
+  std::vector<ConfigIssue> issues;
+  const auto check = [&](std::string key, std::int64_t found) {
+    if (found >= needed) return;
+    ConfigIssue& issue = issues.emplace_back();
+    issue.key_path = std::move(key);
+    issue.message = fmt::format(
+        "expected at least {} ray IDs with when_full: reserve ({}), found {}; or use when_full: spill", needed,
+        fmt::format("blocks of packets.rays = {}, nodes {} wide, {} strips deep{}", config.packets.rays, accel.width,
+                    accel.max_depth,
+                    config.bundles.size > 0 ? fmt::format(", bundles of {} rays", config.bundles.size) : ""),
+        found);
+  };
+  check("collections.capacity", config.collections.capacity);
+  for_each_own(config.topology, [&](const OwnOf& one) {
+    if (one.keys->capacity) check(own_place(one) + ".capacity", *one.keys->capacity);
+  });
+  return issues;
 }
 
 }  // namespace carousel::ringbus

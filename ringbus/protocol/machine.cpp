@@ -1,6 +1,6 @@
 #include "ringbus/protocol/machine.h"
 
-#include "core/config/config.h"
+#include "core/config/own_sections.h"
 #include "ringbus/protocol/packet_pool.h"
 #include "ringbus/resource/resource.h"
 #include "ringbus/resource/traversal/make_traversal.h"
@@ -19,6 +19,13 @@ RayControlSettings control_settings(const Config& config, const accel::Accel& ac
   return settings;
 }
 
+std::vector<std::int64_t> slots_of_resources(const Config& config) {
+  std::vector<std::int64_t> slots(static_cast<std::size_t>(config.topology.resources), config.rays.slots_per_resource);
+  for (std::size_t r = 0; r < slots.size() && has_own(config.topology); ++r)
+    slots[r] = own_sections(config, static_cast<std::int64_t>(r)).rays.slots_per_resource;
+  return slots;
+}
+
 }  // namespace
 
 Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
@@ -35,7 +42,7 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
       packets(make_packets(topology, packets_per_direction, static_cast<std::size_t>(config.packets.rays),
                            one_collection_a_ray(config.collections.traversal))),
       answers(topology.broadcasts() && !stays ? topology.resources() : 0, std::vector<Packet>(packets.size())),
-      stores(make_ray_stores(config.topology.resources, config.rays.slots_per_resource, config.bundles, share)),
+      stores(make_ray_stores(slots_of_resources(config), config.bundles, share)),
       control(control_settings(config, accel, scene_size, topology, share), stores) {}
 
 }  // namespace carousel::ringbus

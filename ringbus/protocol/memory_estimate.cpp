@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/config/own_sections.h"
 #include "core/types/workload.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/ray_store.h"
@@ -13,30 +14,35 @@ namespace carousel::ringbus {
 
 MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   const auto u = [](std::int64_t x) { return static_cast<std::uint64_t>(x); };
-  const std::uint64_t resources = u(config.topology.resources), slots = u(config.rays.slots_per_resource);
+  const std::uint64_t resources = u(config.topology.resources), slots = u(all_slots(config));
   const std::uint64_t packet_rays = u(config.packets.rays);
   const bool ordered = one_collection_a_ray(config.collections.traversal);
   const std::uint64_t next = ordered ? sizeof(NextNode) : 0;
   MemoryEstimate e;
-  e.ray_store = resources * slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
+  e.ray_store = slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
   if (config.bundles.size > 0) {
-    const BundleRoom room = bundle_room(config.bundles, config.rays.slots_per_resource);
-    e.ray_store +=
-        resources * (room.loaded + room.own) * (sizeof(accel::BundleRecord) + (room.rays + 2) * sizeof(std::uint32_t));
+    const auto records = [&](const OwnSections& one) {
+      const BundleRoom room = bundle_room(config.bundles, one.rays.slots_per_resource);
+      return std::int64_t{room.loaded} + room.own;
+    };
+    e.ray_store += u(sum_of_resources(config, records)) *
+                   (sizeof(accel::BundleRecord) + (u(config.bundles.size) + 2) * sizeof(std::uint32_t));
   }
   const Topology topology(config.topology);
   if (ordered || !topology.has_packets()) {
     const std::uint64_t entries = u(config.bvh.width - 1) * u(max_depth) + 1;
-    e.ray_stacks = resources * slots * (entries * sizeof(NextNode) + sizeof(std::uint16_t));
+    e.ray_stacks = slots * (entries * sizeof(NextNode) + sizeof(std::uint16_t));
   }
   // A completed ray may cause two, and both wait while slots are taken.
-  e.rays_waiting = resources * slots * (2 * sizeof(RayRequest) + sizeof(RayResult));
+  e.rays_waiting = slots * (2 * sizeof(RayRequest) + sizeof(RayResult));
   if (!topology.has_packets()) return e;
   // An ID, and a block's share of a collection, its place in the table and its list links.
   const std::uint64_t block = u(block_rays(config.collections, config.packets));
-  std::uint64_t blocks = u(config.collections.capacity) / block + 1;
-  if (ordered) blocks = std::min(blocks, resources * slots);
-  e.collections = resources * blocks * (block * sizeof(RayId) + 128);
+  const auto blocks = [&](const OwnSections& one) {
+    const std::uint64_t own = u(one.collections.capacity) / block + 1;
+    return static_cast<std::int64_t>(ordered ? std::min(own, slots) : own);
+  };
+  e.collections = u(sum_of_resources(config, blocks)) * (block * sizeof(RayId) + 128);
   const std::uint64_t packets = resources * topology.directions() * topology.packets_in_flight() + resources;
   const std::uint64_t copies = topology.broadcasts() ? 1 + resources : 1;  // with those that are answers
   e.packets = copies * packets * (sizeof(Packet) + packet_rays * (sizeof(PacketMember) + next));

@@ -31,10 +31,11 @@ struct BundleRoom {
 class RayStore {
  public:
   /// `here`: false where another rank plays the resource, which then keeps the records.
-  RayStore(ResourceId owner, std::uint32_t slots, BundleRoom room = {}, bool here = true)
+  /// `named`: places that the IDs of a machine tell apart, at least those of this store, as all stores share a layout.
+  RayStore(ResourceId owner, std::uint32_t slots, BundleRoom room = {}, bool here = true, std::uint32_t named = 0)
       : owner_(owner),
         slots_(slots),
-        layout_(slots + room.loaded + room.own),
+        layout_(std::max(named, slots + room.loaded + room.own)),
         records_(here ? slots : 0),
         room_(room),
         bundles_(room.loaded + room.own),
@@ -159,15 +160,17 @@ inline BundleRoom bundle_room(const BundlesConfig& bundles, std::int64_t slots) 
   return {quarter, rebuilds ? 2 * quarter : 0, static_cast<std::uint32_t>(bundles.size)};
 }
 
-/// One for each resource, with `slots` slots each and room for bundles.
-inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(std::int64_t resources, std::int64_t slots,
+/// One for each resource, with its slots and room for bundles. `slots` by resource.
+inline std::vector<std::unique_ptr<RayStore>> make_ray_stores(const std::vector<std::int64_t>& slots,
                                                               const BundlesConfig& bundles,
                                                               const RankShare& share = {}) {
-  const BundleRoom room = bundle_room(bundles, slots);
+  const std::int64_t most = *std::max_element(slots.begin(), slots.end());
+  const BundleRoom largest = bundle_room(bundles, most);
+  const std::uint32_t named = static_cast<std::uint32_t>(most) + largest.loaded + largest.own;
   std::vector<std::unique_ptr<RayStore>> stores;
-  for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(resources); ++r)
-    stores.push_back(
-        std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots), room, share.here(ResourceId(r))));
+  for (std::uint32_t r = 0; r < slots.size(); ++r)
+    stores.push_back(std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(slots[r]),
+                                                bundle_room(bundles, slots[r]), share.here(ResourceId(r)), named));
   return stores;
 }
 

@@ -20,6 +20,7 @@
 #include "core/types/unit_kind.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
+#include "ringbus/results/stop_ring_use.h"
 #include "ringbus/results/trace.h"
 #include "ringbus/time/clock.h"
 
@@ -86,6 +87,7 @@ struct LinkUse {
   Utilisation use;
   Occupancy queue;
   std::uint64_t bytes = 0;  ///< bytes of the packets; 0 for synthetic traffic
+  std::int64_t mhz = 0;     ///< of the link's clock; 0: that of the resources
   friend bool operator==(const LinkUse&, const LinkUse&) = default;
 };
 
@@ -112,6 +114,7 @@ struct CycleResult {
   std::optional<ProgressSample> all_begun;  ///< when no ray was left that no other ray causes
   std::vector<TileResult> tiles;            ///< by resource
   std::vector<LinkUse> links;
+  std::optional<StopRingUse> stops{};  ///< of a ring whose stops have no queues
   std::vector<ByteRow> bytes;
   std::vector<CacheCounts> caches;
   std::vector<AheadCounts> fetched_ahead;  ///< by cache, if a part asks for lines ahead

@@ -13,6 +13,7 @@ struct Recording {
   TripTable* trips = nullptr;  ///< with `slices`
   std::uint32_t track = 0;     ///< its first
   RayLog* ray = nullptr;
+  std::uint32_t contexts = 0;  ///< tracks of test contexts, as many for each resource
 
   /// A packet is issued. Only with `slices`.
   void issue(std::uint32_t packet, std::span<const PacketMember> members) const {

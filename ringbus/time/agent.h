@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "ringbus/time/clock.h"
+#include "ringbus/time/clock_ratio.h"
 
 namespace carousel::ringbus {
 
@@ -12,6 +12,12 @@ namespace carousel::ringbus {
 class Agent {
  public:
   virtual ~Agent() = default;
+
+  /// Its cycles, and those of the fastest clock of the machine (MachineClocks::to_fastest()). Its own are those of all
+  /// that follows here; of its neighbours' channels, those that lead to it tell their times in them.
+  const ClockRatio& clock() const { return clock_; }
+  /// Before the start; without it, it goes by the fastest clock.
+  void run_by(const ClockRatio& clock) { clock_ = clock; }
 
   /// The next cycle in which it has something to do; kNever until something arrives.
   virtual Cycle next() const = 0;
@@ -31,6 +37,9 @@ class Agent {
   /// One line that says what it holds and waits for, for the report of a machine that got stuck; empty when it is at
   /// rest.
   virtual std::string describe() const = 0;
+
+ private:
+  ClockRatio clock_;
 };
 
 }  // namespace carousel::ringbus

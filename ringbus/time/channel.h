@@ -3,13 +3,14 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <memory>
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
 
 #include "ringbus/rays/ray_id.h"
 #include "ringbus/time/channel_list.h"
-#include "ringbus/time/clock.h"
+#include "ringbus/time/clock_ratio.h"
 
 namespace carousel::ringbus {
 
@@ -42,7 +43,17 @@ class Channel : public AnyChannel {
       delete std::exchange(block, block->next);
   }
 
+  /// The two agents go by different clocks: times that one names are told to the other by its own, after a
+  /// synchroniser. `there`: from the clock by which arrivals are named to the receiver's; `back`: from the clock by
+  /// which returns are named to the sender's. Before the start.
+  void cross(const ClockRatio& there, const ClockRatio& back) {
+    if (!there.equal()) there_ = std::make_unique<const ClockRatio>(there);
+    if (!back.equal()) returns_by_ = std::make_unique<const ClockRatio>(back);
+  }
+
   void send(Cycle arrival, T thing) {
+    if (there_ != nullptr) [[unlikely]]
+      arrival = there_->enter(arrival);
     if constexpr (kChecked) {
       if (arrival < last_sent_) throw std::logic_error("a channel's arrivals go back in time");
       last_sent_ = arrival;
@@ -71,6 +82,8 @@ class Channel : public AnyChannel {
   /// The sender learns at `back` that the thing has been taken; no earlier than of any before (checked builds throw a
   /// std::logic_error).
   T take(Cycle back) requires Returns {
+    if (returns_by_ != nullptr) [[unlikely]]
+      back = returns_by_->enter(back);
     if constexpr (kChecked) {
       if (back < last_back_) throw std::logic_error("a channel's places come back in another order");
       last_back_ = back;
@@ -205,8 +218,9 @@ class Channel : public AnyChannel {
   alignas(64) Cursor head_;
   std::atomic<std::size_t> taken_{0};
   std::uint64_t bytes_taken_ = 0;
-  mutable Cycle arrival_ = kNever;  // arrival of the first thing, once it has been looked at
-  Cycle last_back_ = 0;             // `back` of the last thing taken, in checked builds
+  mutable Cycle arrival_ = kNever;                // arrival of the first thing, once it has been looked at
+  Cycle last_back_ = 0;                           // `back` of the last thing taken, in checked builds
+  std::unique_ptr<const ClockRatio> returns_by_;  // null: one clock
   // Used by the sender, and `sent_` read by the receiver.
   alignas(64) Cursor tail_;
   std::atomic<std::size_t> sent_{0};
@@ -214,7 +228,8 @@ class Channel : public AnyChannel {
   Cycle* wake_ = &unconnected_;
   Cycle unconnected_ = kNever;
   std::size_t blocks_ = 1;
-  Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds
+  Cycle last_sent_ = 0;                      // arrival of the last thing, in checked builds
+  std::unique_ptr<const ClockRatio> there_;  // null: one clock
   [[no_unique_address]] mutable std::conditional_t<Returns, Heard, Nothing> returns_;
 };
 

@@ -7,9 +7,9 @@
 
 namespace carousel::ringbus {
 
-/// Two clocks, of the resources and of the network between them. They start with a common edge, and their edges are
-/// counted: as the ratio of their frequencies is a ratio of integers, the edge of one clock that follows an edge of the
-/// other is known exactly, however long a run takes.
+/// Two clocks, of the resources and of the network between them, or any other pair of a near and a far one. They start
+/// with a common edge, and their edges are counted: as the ratio of their frequencies is a ratio of integers, the edge
+/// of one clock that follows an edge of the other is known exactly, however long a run takes.
 ///
 /// What crosses from one clock to the other is taken over at the next edge of that one, which may be the same moment,
 /// and then goes through a synchroniser, so many cycles of it. Equal clocks have neither.
@@ -27,6 +27,21 @@ class ClockRatio {
   /// The first edge of the network's clock that is not before an edge of the resources', and the other way.
   Cycle to_network(Cycle core) const { return ceil_div(core * network_, core_); }
   Cycle to_core(Cycle network) const { return ceil_div(network * core_, network_); }
+  /// The last edge of the resources' clock that is not after an edge of the network's.
+  Cycle before(Cycle network) const { return network * core_ / network_; }
+  /// The last edge of the network's clock that is not after an edge of the resources'.
+  Cycle floor_to_network(Cycle core) const { return core * network_ / core_; }
+  bool equal() const { return core_ == network_; }
+
+  /// The first edge of the resources' clock from which on something that leaves it `wait` cycles later is there by the
+  /// network's at `edge` at the earliest.
+  Cycle first_for(Cycle edge, Cycle wait) const {
+    if (edge <= synchroniser_) return 0;
+    // The edge before is too early for all that leave by its own time.
+    const Cycle after = (edge - synchroniser_ - 1) * core_ / network_ + 1;
+    return after > wait ? after - wait : 0;
+  }
+
   /// When something that a resource sends is there by the clock of the network, and the other way.
   Cycle enter(Cycle core) const { return to_network(core) + synchroniser_; }
   Cycle leave(Cycle network) const { return to_core(network) + synchroniser_; }

@@ -172,13 +172,23 @@ class WindowRun {
   struct Schedule {
     std::vector<Cycle> wake;
     std::vector<std::uint8_t> polled;
+    std::vector<ClockRatio> clocks;  // empty: all go by one
 
     explicit Schedule(const std::vector<Agent*>& agents) {
       for (const Agent* agent : agents) {
         wake.push_back(agent->next());
         polled.push_back(agent->polled());
       }
+      if (std::any_of(agents.begin(), agents.end(), [](const Agent* agent) { return !agent->clock().equal(); }))
+        for (const Agent* agent : agents) clocks.push_back(agent->clock());
     }
+    /// The cycle of the fastest clock in which an edge of an agent's lies.
+    Cycle cycle_of(std::size_t i, Cycle edge) const {
+      if (clocks.empty() || edge == kNever) return edge;
+      return clocks[i].floor_to_network(edge);
+    }
+    /// The first edge of an agent's clock that is not before a cycle of the fastest one.
+    Cycle edge_at(std::size_t i, Cycle cycle) const { return clocks.empty() ? cycle : clocks[i].to_core(cycle); }
   };
 
   /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
@@ -193,7 +203,7 @@ class WindowRun {
     Cycle first = kNever;
     for (std::size_t i = 0; i < wake.size(); ++i) {
       if (schedule.polled[i]) wake[i] = std::min(wake[i], agents[i]->unannounced());
-      first = std::min(first, wake[i]);
+      first = std::min(first, schedule.cycle_of(i, wake[i]));
     }
     return first;
   }
@@ -233,10 +243,11 @@ class WindowRun {
     std::uint64_t runs = 0;
     try {
       for (std::size_t i = 0; i < agents.size(); ++i) {
-        if (schedule.wake[i] >= end) continue;
-        if (kChecked && agents[i]->next() < begin) throw_not_woken();
+        const Cycle own_end = schedule.edge_at(i, end);
+        if (schedule.wake[i] >= own_end) continue;
+        if (kChecked && agents[i]->next() < schedule.edge_at(i, begin)) throw_not_woken();
         ++runs;
-        agents[i]->run(end);
+        agents[i]->run(own_end);
         schedule.wake[i] = agents[i]->next_after_run();
         schedule.polled[i] = agents[i]->polled();
       }

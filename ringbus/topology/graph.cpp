@@ -200,11 +200,43 @@ void plan_the_bus(const TopologyConfig& config, TopologyPlan& plan) {
                             "bus brings is always taken in"};
 }
 
+/// A ring whose stops have no queues: a star whose middle is the ring.
+TopologyPlan plan_stop_ring(const TopologyConfig& config, const Graph& graph, const Routes& routes) {
+  const config::StopRing ring = config::stop_ring(config, graph);
+  TopologyPlan plan;
+  plan.successors = {config.tour == Tour::kNearest ? nearest_round(graph, routes) : round_in_steps(config, 1)};
+  const ResourceId hub(graph.resources);
+  const auto wire = [&](ResourceId from, ResourceId to) {
+    TopologyPlan::Wire& one = plan.wires.emplace_back();
+    one.from = from;
+    one.to = to;
+    one.depth = config.link.depth;
+    one.bytes_per_cycle = ring.drawn->stops.port_bytes_per_cycle.value_or(ring.bytes_per_cycle);
+    one.mm = 0;  // a stop stands beside its resource
+    one.mhz = ring.drawn->mhz;
+  };
+  for (std::uint32_t r = 0; r < graph.resources; ++r) wire(ResourceId(r), hub);
+  for (std::uint32_t r = 0; r < graph.resources; ++r) wire(hub, ResourceId(r));
+  for (std::uint32_t r = 0; r < graph.resources; ++r)  // by the one port of each, and then from the ring
+    for (std::uint32_t to = 0; to < graph.resources; ++to) plan.exits.push_back({0, true});
+  for (std::uint32_t to = 0; to < graph.resources; ++to) plan.exits.push_back({static_cast<std::uint16_t>(to), true});
+  plan.routed = true;
+  plan.hubs = {TopologyPlan::Hub::kRing};
+  plan.hub_places = {0};
+  plan.claim_cycles.resize(graph.resources + 1u);
+  plan.node_mhz.resize(graph.resources + 1u);
+  plan.node_mhz.back() = ring.drawn->mhz;
+  plan.packets_in_flight = packets_in_flight(config);
+  plan.verdict = stop_ring_verdict(ring.drawn->stops);
+  return plan;
+}
+
 }  // namespace
 
 TopologyPlan plan_graph(const TopologyConfig& config) {
   const Graph graph = draw_checked(config);
   const std::vector<Routes> routes = routes_of(graph);
+  if (config::stop_ring_entry(config)) return plan_stop_ring(config, graph, routes.front());
   TopologyPlan plan;
   for (const Routes& of_lane : routes)
     plan.successors.push_back(config.tour == Tour::kNearest ? nearest_round(graph, of_lane)
@@ -220,6 +252,8 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
     wire.depth = link.depth;
     wire.bytes_per_cycle = link.bytes_per_cycle;
     wire.credit_cycles = to.drawn->credit_cycles;
+    wire.mhz = link.mhz;
+    wire.queue = link.queue;
     if (from.at.given && to.at.given) wire.mm = link_mm(graph, link);
   }
   plan.flits_apart =
@@ -227,8 +261,10 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
           graph.links, [&](const Graph::Link& link) { return link.bytes_per_cycle == config.link.bytes_per_cycle; }) &&
       std::ranges::all_of(graph.nodes, [](const Graph::Node& node) { return node.drawn->forward == Forward::kHead; });
   plan.channels = plan_channels(config, graph, routes.front());
-  for (const Graph::Node& node : graph.nodes)
+  for (const Graph::Node& node : graph.nodes) {
     plan.claim_cycles.push_back(static_cast<std::uint32_t>(node.drawn->claim_cycles));
+    plan.node_mhz.push_back(node.drawn->mhz);
+  }
   for (std::size_t i = graph.resources; i < graph.nodes.size(); ++i) {
     plan.hubs.push_back(TopologyPlan::Hub::kRouter);
     plan.hub_places.push_back(static_cast<std::uint32_t>(graph.nodes[i].drawn->buffers.value_or(0)));
@@ -240,10 +276,7 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
   }
   plan.routed = true;
   plan.exits = exits_of(graph, routes);
-  if (const auto ring = config::stop_ring_entry(config))
-    plan.verdict = stop_ring_verdict(config.links[*ring].stops);
-  else
-    VisitJudge(config, graph, routes, plan).judge();
+  VisitJudge(config, graph, routes, plan).judge();
   return plan;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "core/config/fields/queue_kind.h"
 #include "core/types/ids.h"
 #include "ringbus/topology/graph/channel_plan.h"
 
@@ -33,12 +35,15 @@ struct TopologyPlan {
     std::int64_t bytes_per_cycle = 0;  ///< width
     std::int64_t credit_cycles = 0;    ///< that its last node takes to tell of a free place, besides the latency
     double mm = -1;                    ///< length along the axes of the die; negative: not known
+    std::int64_t mhz = 0;              ///< of its clock; 0: that of the resources
+    std::optional<QueueKind> queue{};  ///< of the native engine; absent: as topology.link says
   };
 
   /// A node that is no resource.
   enum class Hub : std::uint8_t {
     kBus,     ///< one medium for all: it moves one packet at a time, straight to its next stop
     kRouter,  ///< passes packets on to the port that `exits` names
+    kRing,    ///< a ring whose stops have no queues, with a port for each resource
   };
   /// The way out of a node towards a resource.
   struct Exit {
@@ -69,6 +74,7 @@ struct TopologyPlan {
   bool flits_apart = false;
   ChannelPlan channels;                     ///< only where packets are routed
   std::vector<std::uint32_t> claim_cycles;  ///< by node, as the key of the graph's nodes; likewise
+  std::vector<std::int64_t> node_mhz;       ///< by node, its clock; 0, or empty: that of the resources
   /// By direction of a packet: the direction in which the acknowledgement of its delivery travels back to its source.
   /// Only where traffic runs and packets are not sent directly.
   std::vector<std::uint16_t> ack_directions;

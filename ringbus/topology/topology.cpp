@@ -13,8 +13,10 @@ Topology::Topology(const TopologyConfig& config)
       resources_(static_cast<std::uint32_t>(config.resources)),
       visit_all_(config.visit == Visit::kAll),
       skips_ahead_(plan_.routed ? !visit_all_ : plan_.direct && (!visit_all_ || broadcasts())),
-      has_widths_(std::ranges::any_of(
-          plan_.wires, [&](const Wire& wire) { return wire.bytes_per_cycle != config.link.bytes_per_cycle; })),
+      has_widths_(
+          std::ranges::any_of(plan_.wires,
+                              [&](const Wire& wire) { return wire.bytes_per_cycle != config.link.bytes_per_cycle; }) ||
+          std::ranges::count(plan_.hubs, Hub::kRing) > 0),  // which sends packets on flit by flit
       ports_(resources_ + plan_.hubs.size()) {
   for (const std::vector<ResourceId>& round : plan_.successors)
     successors_.insert(successors_.end(), round.begin(), round.end());

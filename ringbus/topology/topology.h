@@ -57,6 +57,8 @@ class Topology {
   bool flits_apart() const { return plan_.flits_apart; }
   /// The time in which the first packet of a queue claims a channel; likewise.
   std::uint32_t claim_cycles(ResourceId node) const { return plan_.claim_cycles[node.value]; }
+  /// The clock of a node in MHz; 0: that of the resources.
+  std::int64_t mhz(ResourceId node) const { return plan_.node_mhz.empty() ? 0 : plan_.node_mhz[node.value]; }
   /// No link waits for another, and no rule has to keep them from filling up.
   bool room_for_all() const { return plan_.room_for_all; }
   /// Egress places of a hub for each port; 0: for all packets there are.

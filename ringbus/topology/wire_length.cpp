@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/config/graph/ring.h"
+#include "ringbus/topology/graph_facts.h"
+
 namespace carousel::ringbus {
 
 namespace {
@@ -44,6 +47,20 @@ double links_long(const Topology& topology, const Topology::Wire& wire) {
 
 double wire_length(const Topology& topology, const Topology::Wire& wire, double link_mm) {
   return wire.mm >= 0 ? wire.mm : link_mm * links_long(topology, wire);
+}
+
+std::vector<double> stop_ring_lengths(const TopologyConfig& config, double between) {
+  std::vector<double> out;
+  if (!config::stop_ring_entry(config)) return out;
+  const config::Graph graph = draw_checked(config);
+  for (const config::Graph::Link& link : graph.links) {
+    const bool placed = graph.nodes[link.from].at.given && graph.nodes[link.to].at.given;
+    const bool resources = link.from < graph.resources && link.to < graph.resources;
+    out.push_back(placed      ? link_mm(graph, link)
+                  : resources ? between * place_distance(graph.resources, link.from, link.to)
+                              : between);
+  }
+  return out;
 }
 
 double wire_lengths(const Topology& topology, std::int64_t bytes_per_cycle, double link_mm) {

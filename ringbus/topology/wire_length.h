@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "ringbus/topology/topology.h"
 
@@ -16,6 +17,10 @@ double wire_length(const Topology& topology, const Topology::Wire& wire, double 
 
 /// Likewise between two places on that grid, each of a resource.
 double place_distance(std::uint32_t resources, std::uint32_t from, std::uint32_t to);
+
+/// The lengths of the links between the stops of a ring without queues, in the order of its graph; none on any other
+/// network.
+std::vector<double> stop_ring_lengths(const TopologyConfig& config, double link_mm);
 
 /// The lengths of all wires together, each times its width over `bytes_per_cycle`, which is positive. The medium of a
 /// bus counts once, as a wire of that width.

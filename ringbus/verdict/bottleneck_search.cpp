@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/own_sections.h"
 #include "core/statistics/worth_naming.h"
 #include "ringbus/verdict/foretell.h"
 #include "ringbus/verdict/phases.h"
@@ -364,7 +365,7 @@ class Search {
 }  // namespace
 
 std::uint64_t slots_of(const Config& config) {
-  return static_cast<std::uint64_t>(config.topology.resources * config.rays.slots_per_resource);
+  return static_cast<std::uint64_t>(all_slots(config));
 }
 
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {

@@ -14,7 +14,7 @@ class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
         page = (SOURCE / "docs" / "draw-a-machine.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 9)
+        self.assertEqual(len(blocks), 10)
         printed = []
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "bin").mkdir()

@@ -15,7 +15,7 @@ class RingsPage(unittest.TestCase):
     def test_every_block_works(self):
         page = (SOURCE / "docs" / "rings.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 4)
+        self.assertEqual(len(blocks), 5)
         printed = []
         with tempfile.TemporaryDirectory() as folder:
             (Path(folder) / "bin").mkdir()

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -40,6 +41,7 @@ struct EngineConfig {
 struct ClocksConfig {
   std::optional<std::int64_t> core, noc;  ///< MHz
   std::int64_t synchroniser_cycles = 2;
+  std::map<std::string, std::int64_t> others{};  ///< MHz, by the name of the clock
 };
 
 namespace config {
@@ -76,11 +78,13 @@ void describe(V& v, ClocksConfig& c) {
   v.field_or_auto("core", c.core, IntRange{1, 100'000}, "MHz",
                   "The clock of the resources, which is engine.clock_mhz by another name; auto is that.");
   v.field_or_auto("noc", c.noc, IntRange{1, 100'000}, "MHz",
-                  "The clock of links, routers and stops of a graph with synthetic traffic; auto is that of the "
-                  "resources.");
+                  "The clock of the links, routers and stops of a graph that name no other; with synthetic traffic its "
+                  "resources pass packets on by it, too. auto is that of the resources.");
   v.field("synchroniser_cycles", c.synchroniser_cycles, IntRange{0, 1000}, "cycles",
           "The time, by the clock that is entered, from the first edge after a packet has come from the other clock "
           "until it is there. Equal clocks have no synchroniser.");
+  v.others(c.others, IntRange{1, 100'000}, "MHz",
+           "Any other name is that of a further clock, by which nodes and links of a graph go that name it.");
 }
 
 }  // namespace config

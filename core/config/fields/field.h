@@ -3,8 +3,8 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
+#include <utility>
 
-#include "core/config/fields/row.h"
 #include "core/types/enum_names.h"
 
 namespace carousel::config {
@@ -21,7 +21,9 @@ namespace carousel::config {
 //   choices(key, vector of enum, meaning)
 //   texts(key, vector of texts, meaning)
 //   effects, workload, vary(key, value, meaning)   the three with a syntax of their own
-// A row goes on with what else is known of its key (core/config/fields/row.h).
+//   others(map of name to integer, range, unit, meaning)   numbers under any other name; the last row of its section
+//   own_key(row of kOwnKeys, optional integer)             a number in which a resource differs
+// A row goes on with what else is known of its key (Row).
 
 /// A closed range.
 struct IntRange {
@@ -41,5 +43,72 @@ static_assert(std::bit_width(std::uint64_t(kMaxResources - 1)) + std::bit_width(
 
 inline constexpr IntRange kSeed{0, std::numeric_limits<std::int64_t>::max()};
 inline constexpr IntRange kCycles{1, 1'000'000};
+
+/// How the search for the bottleneck makes a part better by a number of the configuration. A key whose value is one of
+/// a list names the value instead.
+enum class Better : std::uint8_t {
+  kTwice,       ///< twice as many, or as wide
+  kTwiceOrOne,  ///< likewise, and 1 where there was none
+  kHalf,        ///< half the time, at least one cycle
+};
+
+/// The rest of what the row of a key says to the search. All keys with one class are relaxed together.
+struct Relaxed {
+  int times = 6;              ///< how often tester_limited() relaxes it; 0: it is part of the test, or a choice
+  bool keeps_shapes = false;  ///< more room for shapes, which fills long after the machine is full of rays
+};
+inline constexpr int kStorageTimes = 2;  ///< for storage, which the host has to hold too
+
+/// The value that `field`, `field_or_auto`, `choice` and `section_or_number` of a visitor return, so that a row goes
+/// on:
+///   .relax(class, Better or value, [Relaxed, condition])   the search relaxes the key, where the condition holds
+///   .only(engine, words, [values])                         the other engine does not have these values, or any but the
+///                                                          default; the words say in messages what it lacks
+/// This type ignores both; visitors that need them return a type of their own.
+struct Row {
+  template <class... Rest>
+  constexpr Row relax(const Rest&...) const {
+    return {};
+  }
+  template <class... Rest>
+  constexpr Row only(const Rest&...) const {
+    return {};
+  }
+};
+
+/// The base of a visitor V that asks for the values alone: its on_field() and the others return nothing.
+template <class V>
+class RowVisitor {
+ public:
+  template <class... Args>
+  Row field(Args&&... args) {
+    self().on_field(std::forward<Args>(args)...);
+    return {};
+  }
+  template <class... Args>
+  Row field_or_auto(Args&&... args) {
+    self().on_field_or_auto(std::forward<Args>(args)...);
+    return {};
+  }
+  template <class... Args>
+  Row choice(Args&&... args) {
+    self().on_choice(std::forward<Args>(args)...);
+    return {};
+  }
+  /// A row of kOwnKeys (own_keys.h): a number of one resource, or auto.
+  template <class Key, class T>
+  Row own_key(const Key& row, T& value) {
+    self().on_field_or_auto(row.name, value, row.range, row.unit, row.meaning);
+    return {};
+  }
+  template <class... Args>
+  Row section_or_number(Args&&... args) {
+    self().on_section_or_number(std::forward<Args>(args)...);
+    return {};
+  }
+
+ private:
+  V& self() { return static_cast<V&>(*this); }
+};
 
 }  // namespace carousel::config

@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "core/config/fields/field.h"
+#include "core/config/fields/own_keys.h"
+#include "core/config/fields/queue_kind.h"
+#include "core/config/fields/testers.h"
 
 namespace carousel {
 
@@ -91,7 +94,7 @@ struct GraphWay {
 /// A node of the graph, or a group of equal ones.
 struct GraphNode {
   static constexpr std::string_view kRequired = "name";
-  static constexpr std::string_view kRowPath = "topology.nodes";
+  static constexpr std::string_view kRowPath = "";  ///< the keys of its testers are those of the whole machine
 
   std::string name;
   GraphNodeKind kind = GraphNodeKind::kResource;
@@ -104,6 +107,10 @@ struct GraphNode {
   std::int64_t credit_cycles = 0, claim_cycles = 0;
   GraphPoint at, step;
   std::optional<std::int64_t> columns;
+  std::string clock{};   ///< empty: as clocks.noc and the kind say
+  std::int64_t mhz = 0;  ///< of that clock, once the configuration has been read; 0: the clock of the resources
+  OwnKeys own{};         ///< of resources
+  std::optional<TestersConfig> testers{};
 
   friend bool operator==(const GraphNode&, const GraphNode&) = default;
 };
@@ -149,6 +156,9 @@ struct GraphLink {
   std::int64_t lanes = 1;
   std::vector<Carried> carries{Carried::kPackets};
   RingStops stops;
+  std::optional<QueueKind> queue{};
+  std::string clock{};   ///< empty: clocks.noc
+  std::int64_t mhz = 0;  ///< of that clock, once the configuration has been read; 0: the clock of the resources
 
   friend bool operator==(const GraphLink&, const GraphLink&) = default;
 };
@@ -196,6 +206,12 @@ void describe(V& v, GraphNode& c) {
   v.field("step", c.step, kDiePlace, "mm", "From a node of a group to the next in its row and in its column.");
   v.field_or_auto("columns", c.columns, IntRange{1, kMaxResources}, "nodes",
                   "The nodes in a row of a group that has places; auto is all of them.");
+  v.field("clock", c.clock, "",
+          "The clock, a name of `clocks`, by which the node passes packets on; left out, core at a resource with "
+          "packets of rays, and otherwise noc.");
+  describe(v, c.own);
+  v.section("testers", c.testers,
+            "The testers of these resources. A key that is not given is as in `testers` of the whole machine.");
 }
 
 template <class V>
@@ -254,7 +270,9 @@ void describe(V& v, GraphLink& c) {
                   "keep them until they are home. Auto is packets of all lanes.");
   v.field("lanes", c.lanes, IntRange{1, kMaxLanes}, "links",
           "The number of equal links side by side, one for each lane from `lane` on, or from 0 on.");
-  v.section("stops", c.stops, "The stops of a ring that is the whole network, for synthetic traffic.");
+  v.choice("queue", c.queue, "The queue that carries the link in the native engine; left out, that of topology.link.");
+  v.field("clock", c.clock, "", "The clock of the link, a name of `clocks`; left out, noc.");
+  v.section("stops", c.stops, "The stops of a ring that is the whole network.");
 }
 
 }  // namespace config

@@ -13,6 +13,8 @@ struct TesterUnits {
   std::int64_t units = 1;
   std::int64_t interval_cycles = 1;
   std::int64_t latency_cycles = 4;
+
+  friend bool operator==(const TesterUnits&, const TesterUnits&) = default;
 };
 
 constexpr PerUnit<TesterUnits> default_tester_units() {
@@ -27,6 +29,8 @@ struct TestersConfig {
     std::int64_t lanes = 1;
     enum class Map { kRays, kShapes } map = Map::kRays;
     std::int64_t reformat_cycles = 1;
+
+    friend bool operator==(const Simd&, const Simd&) = default;
   } simd;
   struct Distributor {
     std::int64_t testers = 8;
@@ -36,12 +40,16 @@ struct TestersConfig {
     enum class Stragglers { kWait, kForward } stragglers = Stragglers::kWait;
     std::int64_t results_per_cycle = 8;
     std::int64_t results = 8;
+
+    friend bool operator==(const Distributor&, const Distributor&) = default;
   } distributor;
   std::int64_t contexts = 16;
   std::int64_t window = 1;
   enum class OwnRays { kBefore, kAfter } own_rays = OwnRays::kBefore;
   enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
   enum class BundleBlocks { kSeparate, kPairs, kShared } bundle_blocks = BundleBlocks::kSeparate;
+
+  friend bool operator==(const TestersConfig&, const TestersConfig&) = default;
 };
 
 template <>

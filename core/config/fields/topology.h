@@ -10,6 +10,7 @@
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/config/fields/graph.h"
+#include "core/config/fields/own_keys.h"
 #include "core/config/fields/queue_kind.h"
 #include "core/config/fields/testers.h"
 
@@ -103,7 +104,7 @@ struct ResourceOverride {
   std::optional<std::int64_t> resource;
   TestersConfig testers;
   std::string nodes{};
-  std::optional<std::int64_t> shape_buffer_kib{};
+  OwnKeys own{};
   std::vector<std::int64_t> named{};  ///< the resources that `nodes` names, once the graph has been read
 
   bool is_about(std::int64_t number) const {
@@ -142,19 +143,51 @@ inline bool is_bus(const TopologyConfig& c) {
   return std::ranges::any_of(c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kBus; });
 }
 
-/// The testers of a resource: its own, or those of the whole machine.
-inline const TestersConfig& testers_of(const TestersConfig& machine, const TopologyConfig& topology,
-                                       std::int64_t resource) {
-  for (const ResourceOverride& one : topology.overrides)
-    if (one.is_about(resource)) return one.testers;
-  return machine;
+/// What some resources have of their own, and the place in the configuration that says so.
+struct OwnOf {
+  const ResourceOverride* override = nullptr;  ///< null: a node of a graph says so
+  std::int64_t first = 0, count = 0;           ///< of the resources of that node
+  const TestersConfig* testers = nullptr;      ///< null: those of the whole machine
+  const OwnKeys* keys = nullptr;               ///< never null
+  std::size_t entry = 0;                       ///< its place in topology.overrides, or in topology.nodes
+
+  bool is_about(std::int64_t resource) const {
+    return override != nullptr ? override->is_about(resource) : resource >= first && resource < first + count;
+  }
+};
+
+/// Calls `body` with each OwnOf: of the nodes of a graph, and then of the overrides.
+template <class Body>
+void for_each_own(const TopologyConfig& topology, const Body& body) {
+  std::int64_t first = 0;
+  for (std::size_t i = 0; i < topology.nodes.size() && topology.shape == TopologyShape::kGraph; ++i) {
+    const GraphNode& node = topology.nodes[i];
+    if (node.kind != GraphNodeKind::kResource) continue;
+    const std::int64_t count = node.count.value_or(1);
+    if (node.testers || node.own != OwnKeys{})
+      body(OwnOf{nullptr, first, count, node.testers ? &*node.testers : nullptr, &node.own, i});
+    first += count;
+  }
+  for (std::size_t i = 0; i < topology.overrides.size(); ++i)
+    body(OwnOf{&topology.overrides[i], 0, 0, &topology.overrides[i].testers, &topology.overrides[i].own, i});
 }
 
-/// The shape buffer of a resource: its own, or that of the whole machine (memory.shape_buffer_kib).
-inline std::int64_t shape_buffer_kib_of(std::int64_t machine, const TopologyConfig& topology, std::int64_t resource) {
-  for (const ResourceOverride& one : topology.overrides)
-    if (one.is_about(resource)) return one.shape_buffer_kib.value_or(machine);
-  return machine;
+/// Tells whether `test` holds for one of them.
+template <class Test>
+bool any_own(const TopologyConfig& topology, const Test& test) {
+  bool any = false;
+  for_each_own(topology, [&](const OwnOf& one) { any = any || test(one); });
+  return any;
+}
+
+/// Tells whether some resource differs from the others.
+inline bool has_own(const TopologyConfig& topology) {
+  return any_own(topology, [](const OwnOf&) { return true; });
+}
+
+/// The place in the configuration of what some resources have of their own.
+inline std::string own_place(const OwnOf& one) {
+  return (one.override != nullptr ? "topology.overrides." : "topology.nodes.") + std::to_string(one.entry);
 }
 
 namespace config {
@@ -178,9 +211,7 @@ void describe(V& v, ResourceOverride& c) {
   v.field_or_auto("resource", c.resource, IntRange{0, kMaxResources - 1}, "",
                   "The number of the resource; auto: nodes says which.");
   v.field("nodes", c.nodes, "", "Resources of a graph by name, such as r[0..3].");
-  v.field_or_auto("shape_buffer_kib", c.shape_buffer_kib, IntRange{1, 1 << 20}, "KiB",
-                  "The shape data that it holds; auto is memory.shape_buffer_kib.")
-      .relax("shape_buffer", Better::kTwice, Relaxed{.keeps_shapes = true});
+  describe(v, c.own);
   v.section("testers", c.testers, "Its testers. A key that is not given is as in `testers` of the whole machine.");
 }
 

@@ -262,7 +262,7 @@ class Drawing {
       graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
                               link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
                               link.virtual_channels.value_or(all.virtual_channels), entry_, link.dateline, carries,
-                              lane_});
+                              lane_, link.clock, link.mhz, link.queue});
   }
 
   const TopologyConfig& config_;

@@ -31,6 +31,9 @@ struct Graph {
     bool dateline;
     std::vector<Carried> carries = {};  ///< sorted
     std::int64_t lane = kAllLanes;      ///< of the packets that may take it
+    std::string clock = {};             ///< as the drawing names it
+    std::int64_t mhz = 0;               ///< of its clock; 0: that of the resources
+    std::optional<QueueKind> queue = {};
 
     bool is_for(std::size_t of) const { return lane == kAllLanes || lane == static_cast<std::int64_t>(of); }
     bool carries_any(std::initializer_list<Carried> some) const;

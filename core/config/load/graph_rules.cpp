@@ -36,6 +36,14 @@ void check_node(const GraphNode& node, const std::string& key, const RuleBreach&
   if (node.interleave_bytes && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kMemory)
     breach(key + ".interleave_bytes", fmt::format("caches and memories hold lines; expected auto at a {}, found {}",
                                                   enum_name(node.kind), *node.interleave_bytes));
+  if (node.kind != GraphNodeKind::kResource) {
+    constexpr std::string_view only = "only a resource has this key; expected none at a";
+    if (node.testers) breach(key + ".testers", fmt::format("{} {}", only, enum_name(node.kind)));
+    for_each_own_key([&](const auto& row) {
+      if (const auto own = node.own.*row.own)
+        breach(fmt::format("{}.{}", key, row.name), fmt::format("{} {}, found {}", only, enum_name(node.kind), *own));
+    });
+  }
   if (node.claim_cycles > node.latency_cycles)
     breach(key + ".claim_cycles", fmt::format("expected at most latency_cycles, {}, of which it is a part; found {}",
                                               node.latency_cycles, node.claim_cycles));
@@ -168,6 +176,11 @@ void check_graph(const Config& config, const RuleBreach& breach) {
     breach("area.fit",
            "a graph has as many resources as are drawn, which no budget changes; expected another fit, or no "
            "area.budget_mm2; found resources");
+  for (std::size_t i = 0; i < c.links.size() && config.engine.kind == EngineKind::kCycle; ++i)
+    if (c.links[i].queue)
+      breach(fmt::format("topology.links.{}.queue", i),
+             fmt::format("the cycle engine has no real queues; expected none, or engine.kind: native; found {}",
+                         enum_name(*c.links[i].queue)));
   std::vector<GraphIssue> issues;
   const Graph graph = draw_graph(c, issues);
   DrawnParts drawn;

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/clocks.h"
 #include "core/config/graph/graph.h"
 #include "core/config/reader.h"
 #include "core/config/tree/tree.h"
@@ -58,6 +59,8 @@ void imply(const config::Node& root, Config& config) {
     config.topology.visit = Visit::kOwners;
   if (!graph) return;
   config::name_overrides(config.topology);
+  config::name_clocks(config.topology, {config.clocks, config.engine.clock_mhz},
+                      config.workload.kind == WorkloadConfig::Kind::kTraffic);
   if (topology->find("resources") != nullptr) return;
   const std::int64_t drawn = config::drawn_resources(config.topology);
   config.topology.resources = std::clamp<std::int64_t>(drawn, 1, config::kMaxResources);

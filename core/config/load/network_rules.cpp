@@ -119,8 +119,7 @@ class NetworkRules {
     };
     reads("rays.reads_per_cycle", c.rays.reads_per_cycle);
     reads("rays.banks", c.rays.banks);
-    if (!c.topology.overrides.empty())
-      breach_("topology.overrides", "all testers behind a distributor are equal; expected none");
+    if (has_own(c.topology)) breach_("topology.overrides", "all testers behind a distributor are equal; expected none");
   }
 
   void banks_are_read_together() {
@@ -158,7 +157,12 @@ class NetworkRules {
   }
 
   void overrides_name_resources() {
-    std::map<std::int64_t, std::size_t> seen;
+    std::map<std::int64_t, std::string> seen;
+    for_each_own(c.topology, [&](const OwnOf& one) {
+      if (one.override == nullptr)
+        for (std::int64_t r = one.first; r < one.first + one.count; ++r) seen.emplace(r, own_place(one));
+      own_testers_agree(one);
+    });
     const bool graph = c.topology.shape == TopologyShape::kGraph;
     for (std::size_t i = 0; i < c.topology.overrides.size(); ++i) {
       const ResourceOverride& one = c.topology.overrides[i];
@@ -169,21 +173,33 @@ class NetworkRules {
       if (one.resource >= c.topology.resources)
         breach_(key,
                 fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, *one.resource));
-      else if (one.resource && !seen.emplace(*one.resource, i).second)
-        breach_(key, fmt::format("resource {} has an override already", *one.resource));
-      const auto twice = std::find_if(one.named.begin(), one.named.end(),
-                                      [&](std::int64_t resource) { return !seen.emplace(resource, i).second; });
-      if (twice != one.named.end())
-        breach_(entry + ".nodes", fmt::format("resource {} has an override already", *twice));
-      if (one.testers.any_hit != c.testers.any_hit)
-        breach_(fmt::format("topology.overrides.{}.testers.any_hit", i),
-                fmt::format("all resources have the same any-hit calls; expected {}, found {}",
-                            enum_name(c.testers.any_hit), enum_name(one.testers.any_hit)));
-      if (one.testers.own_rays != c.testers.own_rays)
-        breach_(fmt::format("topology.overrides.{}.testers.own_rays", i),
-                fmt::format("all resources test their own rays at the same time; expected {}, found {}",
-                            enum_name(c.testers.own_rays), enum_name(one.testers.own_rays)));
+      const auto taken = [&](std::int64_t resource, const std::string& at) {
+        const auto [known, added] = seen.emplace(resource, entry);
+        if (added) return false;
+        const bool by_node = known->second.starts_with("topology.nodes");
+        breach_(at, by_node ? fmt::format("resource {} has numbers of its own in {} already; expected one of the two "
+                                          "places",
+                                          resource, known->second)
+                            : fmt::format("resource {} has an override already", resource));
+        return true;
+      };
+      if (one.resource && *one.resource < c.topology.resources) taken(*one.resource, key);
+      for (const std::int64_t resource : one.named)
+        if (taken(resource, entry + ".nodes")) break;
     }
+  }
+
+  /// What all resources have in common, though it is a key of testers.
+  void own_testers_agree(const OwnOf& one) {
+    if (one.testers == nullptr) return;
+    const std::string place = own_place(one) + ".testers.";
+    if (one.testers->any_hit != c.testers.any_hit)
+      breach_(place + "any_hit", fmt::format("all resources have the same any-hit calls; expected {}, found {}",
+                                             enum_name(c.testers.any_hit), enum_name(one.testers->any_hit)));
+    if (one.testers->own_rays != c.testers.own_rays)
+      breach_(place + "own_rays", fmt::format("all resources test their own rays at the same time; expected {}, found "
+                                              "{}",
+                                              enum_name(c.testers.own_rays), enum_name(one.testers->own_rays)));
   }
 
   void own_rays_come_last_where_packets_go_round() {
@@ -236,8 +252,9 @@ class NetworkRules {
                          lanes));
     };
     one_ray("testers.simd.lanes", c.testers.simd.lanes);
-    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
-      one_ray(fmt::format("topology.overrides.{}.testers.simd.lanes", i), c.topology.overrides[i].testers.simd.lanes);
+    for_each_own(c.topology, [&](const OwnOf& one) {
+      if (one.testers != nullptr) one_ray(own_place(one) + ".testers.simd.lanes", one.testers->simd.lanes);
+    });
   }
 
   void children_are_single_shapes() {
@@ -254,8 +271,9 @@ class NetworkRules {
                                  enum_name(c.topology.shape), window));
     };
     check("testers.window", c.testers.window);
-    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
-      check(fmt::format("topology.overrides.{}.testers.window", i), c.topology.overrides[i].testers.window);
+    for_each_own(c.topology, [&](const OwnOf& one) {
+      if (one.testers != nullptr) check(own_place(one) + ".testers.window", one.testers->window);
+    });
   }
 
   void faults_have_a_place() {

@@ -19,4 +19,7 @@ void check_graph(const Config& config, const RuleBreach& breach);
 /// The rules of rings whose stops have no queues, of the ends of synthetic traffic, and of clocks.
 void check_rings(const Config& config, const RuleBreach& breach);
 
+/// The rules of numbers that a resource has of its own.
+void check_own(const Config& config, const RuleBreach& breach);
+
 }  // namespace carousel::config

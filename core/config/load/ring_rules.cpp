@@ -6,9 +6,11 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/clocks.h"
 #include "core/config/graph/graph.h"
 #include "core/config/graph/ring.h"
 #include "core/config/load/network_rules.h"
+#include "core/text/edit_distance.h"
 
 namespace carousel::config {
 
@@ -61,11 +63,13 @@ void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry
   const std::string_view rule = enum_name(link.stops.rule);
   if (link.ring.empty())
     return breach(key + ".stops.rule", fmt::format("only a ring has such stops; expected queues, found {}", rule));
-  if (!has_traffic(config))
+  if (config.engine.kind == EngineKind::kNative)
     breach(key + ".stops.rule",
-           fmt::format("a packet of rays waits at its stops until there are places, and nothing waits on such a ring; "
-                       "expected queues, or workload: traffic; found {}",
+           fmt::format("the native engine has no ring whose stops have no queues; expected queues, or engine.kind: "
+                       "cycle; found {}",
                        rule));
+  if (config.faults.links.any() && !has_traffic(config))
+    breach("faults.links", fmt::format("a ring with rule: {} has no faults yet; expected none", rule));
   if (link.depth)
     breach(key + ".depth",
            fmt::format("a ring with rule: {} holds a flit for each cycle of its latency and has no queues; expected "
@@ -117,22 +121,84 @@ void check_traffic_ends(const Config& config, const RuleBreach& breach) {
                        traffic.reply_bytes));
 }
 
+/// Each clock that is named is there, and each that is there is named.
+void check_clock_names(const Config& config, const RuleBreach& breach) {
+  const ClockTable clocks{config.clocks, config.engine.clock_mhz};
+  const std::vector<std::string> names = clocks.names();
+  std::set<std::string> used;
+  const auto look = [&](const std::string& name, const char* list, std::size_t i) {
+    if (name.empty()) return;
+    used.insert(name);
+    if (clocks.of(name)) return;
+    const auto near = nearest_name(name, names);
+    breach(fmt::format("topology.{}.{}.clock", list, i),
+           fmt::format("expected a clock, one of {}; found '{}'{}", fmt::join(names, ", "), name,
+                       near ? fmt::format("; did you mean '{}'?", *near) : ""));
+  };
+  for (std::size_t i = 0; i < config.topology.nodes.size(); ++i) look(config.topology.nodes[i].clock, "nodes", i);
+  for (std::size_t i = 0; i < config.topology.links.size(); ++i) look(config.topology.links[i].clock, "links", i);
+  const std::vector<std::string> keys{"core", "noc", "synchroniser_cycles"};
+  for (const auto& [name, mhz] : config.clocks.others) {
+    if (used.contains(name)) continue;
+    const auto near = nearest_name(name, keys);
+    breach("clocks." + name, fmt::format("no node or link goes by this clock; expected clock: {} at one of them{}",
+                                         name, near ? fmt::format("; did you mean '{}'?", *near) : ""));
+  }
+}
+
+/// What has no clock of its own yet.
+void check_clocked_parts(const Config& config, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  const bool traffic = has_traffic(config);
+  const auto mhz_of = [&](std::int64_t mhz) { return mhz == 0 ? config.engine.clock_mhz : mhz; };
+  bool several = false;
+  for (std::size_t i = 0; i < c.nodes.size(); ++i) {
+    const GraphNode& node = c.nodes[i];
+    several |= node.mhz != 0;
+    if (node.mhz == 0 || traffic || node.kind == GraphNodeKind::kRouter) continue;
+    breach(fmt::format("topology.nodes.{}.clock", i),
+           fmt::format("a {} goes by the clock of the run, in whose cycles its parts are counted; expected core, or a "
+                       "router, or workload: traffic; found {}",
+                       enum_name(node.kind), node.clock));
+  }
+  for (const GraphLink& link : c.links) several |= link.mhz != 0;
+  if (!several) return;
+  for (std::size_t i = 0; i < c.links.size(); ++i)
+    if (c.links[i].carries != GraphLink{}.carries)
+      breach(fmt::format("topology.links.{}.carries", i),
+             "a drawing that carries more than packets has one clock yet; expected [packets], or equal clocks");
+  if (config.faults.links.any() && !traffic)
+    breach("faults.links", "links between several clocks have no faults yet; expected none, or equal clocks");
+  const auto ring = stop_ring_entry(c);
+  if (!ring) return;
+  for (std::size_t i = 0; i < c.nodes.size(); ++i)
+    if (!c.nodes[i].clock.empty() && mhz_of(c.nodes[i].mhz) != mhz_of(c.links[*ring].mhz))
+      breach(fmt::format("topology.nodes.{}.clock", i),
+             fmt::format("a stop goes by the clock of its ring; expected one of {} MHz, or none; found {}",
+                         mhz_of(c.links[*ring].mhz), c.nodes[i].clock));
+}
+
 void check_clocks(const Config& config, const RuleBreach& breach) {
   const std::int64_t core = config.engine.clock_mhz;
   if (config.clocks.core && *config.clocks.core != core)
     breach("clocks.core", fmt::format("the clock of the resources is engine.clock_mhz; expected {}, or one of the two "
                                       "keys, found {}",
                                       core, *config.clocks.core));
-  const std::int64_t noc = config.clocks.noc.value_or(core);
-  if (noc == core) return;
-  if (!has_traffic(config))
-    breach("clocks.noc", fmt::format("packets of rays know one clock; expected {}, or auto, or workload: traffic; "
-                                     "found {}",
-                                     core, noc));
-  else if (config.topology.shape != TopologyShape::kGraph)
-    breach("clocks.noc", fmt::format("only a graph has a clock of its own; expected {}, or topology.shape: graph, as "
-                                     "check --graph writes it; found {}",
-                                     core, noc));
+  const TopologyConfig& c = config.topology;
+  if (c.shape != TopologyShape::kGraph) {
+    const std::int64_t noc = config.clocks.noc.value_or(core);
+    if (noc != core)
+      breach("clocks.noc", fmt::format("only a graph has a clock of its own; expected {}, or topology.shape: graph, as "
+                                       "check --graph writes it; found {}",
+                                       core, noc));
+    for (const auto& [name, mhz] : config.clocks.others)
+      breach("clocks." + name,
+             "only nodes and links of a graph go by clocks of other names; expected core, noc or "
+             "synchroniser_cycles, or topology.shape: graph");
+    return;
+  }
+  check_clock_names(config, breach);
+  check_clocked_parts(config, breach);
 }
 
 }  // namespace

@@ -45,6 +45,7 @@ class Rules {
     hashed_homes_spill();
     config::check_graph(c, breach);
     config::check_rings(c, breach);
+    config::check_own(c, breach);
     config::check_network(c, options_.force, breach);
     config::check_ranks(c, breach);
     sampling_fits();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <vector>
@@ -22,22 +23,38 @@ class Hub : public Agent {
   /// From now on the counters of its links are read over time, at most so often (resource_samples.h).
   void sample(std::size_t most) { samples_ = CounterSamples(most, counter_index(PortCounter::kBusy, out_.size(), 0)); }
   void record(std::size_t port, const LinkRecorder& recorder) { out_[port].record(recorder); }
+  /// Its cycles, and those of the resources, in which its counters are read. Before the start.
+  void tell_time(const ClockRatio& from_core) { from_core_ = from_core; }
+  /// `end` by the clock of the resources.
   void close(Cycle end) {
-    samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read_ports(out_, at, 0, row); });
+    samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   }
   const CounterSamples& samples() const { return samples_; }
 
  protected:
   /// To be called before anything happens at `now`.
   void look_at(Cycle now) {
+    if (!from_core_.equal()) [[unlikely]]
+      now = from_core_.before(now);
     if (samples_.due(now)) [[unlikely]]
-      samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read_ports(out_, at, 0, row); });
+      samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   }
 
   std::vector<InPort> in_;
   std::vector<OutPort> out_;
 
  private:
+  /// At a cycle of the resources, as these count.
+  void read(Cycle at, std::span<std::uint64_t> row) const {
+    if (from_core_.equal()) return read_ports(out_, at, 0, row);
+    read_ports(out_, from_core_.to_network(at), 0, row);
+    for (std::size_t i = 0; i < out_.size(); ++i) {
+      std::uint64_t& busy = row[counter_index(PortCounter::kBusy, i, 0)];
+      busy = std::min(at, from_core_.before(busy));
+    }
+  }
+
+  ClockRatio from_core_;
   CounterSamples samples_;
 };
 

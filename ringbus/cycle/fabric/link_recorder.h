@@ -4,7 +4,7 @@
 
 #include "ringbus/cycle/fabric/token.h"
 #include "ringbus/results/slice_log.h"
-#include "ringbus/time/clock.h"
+#include "ringbus/time/clock_ratio.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -13,8 +13,14 @@ struct LinkRecorder {
   SliceLog* slices = nullptr;
   const TripTable* trips = nullptr;
   std::uint32_t track = 0;
+  ClockRatio clock{};  ///< from the cycles of the resources, in which times are noted, to those of the sender
 
   void note(const Token& token, Cycle begin, Cycle end, Cycle arrival) const {
+    if (!clock.equal()) {
+      begin = clock.before(begin);
+      end = clock.to_core(end);
+      arrival = clock.to_core(arrival);
+    }
     // The owner does not wait for a resource that only hears a packet, and may have issued it anew.
     const std::uint64_t trip = token.passes ? 0 : trips->of(token.packet.value);
     slices->add({begin, end, trip, arrival, track, token.packet.value, token.rays, SliceKind::kLink});

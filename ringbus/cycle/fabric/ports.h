@@ -25,12 +25,31 @@ struct WireOf {
   alignas(64) Occupancy queue;  ///< the receiver's
 };
 
+/// The receiver of a link goes by another clock than the link.
+struct FarClock {
+  ClockRatio to_link;
+  Cycle credit_cycles = 0;  ///< by its own clock, before a credit leaves
+};
+
+/// The sender of a link goes by another clock than the link, which moves packets by its own: what the sender hands over
+/// passes a synchroniser, in which the next packet may be while the link still moves one.
+struct NearClock {
+  ClockRatio to_link;
+  Cycle node_cycles = 0;  ///< by the sender's clock, before the link
+  Cycle link_free = 0;    ///< by the link's
+  Cycle busy = 0;         ///< likewise
+
+  /// The first cycle of the sender in which a packet may leave that the link begins to move at `edge` at the earliest.
+  Cycle leaves_for(Cycle edge) const { return to_link.first_for(edge, node_cycles); }
+};
+
 /// The port by which packets come in: the far end of a link, with the queue of `topology.link.depth` places at it. A
 /// place is held until the packet is taken; the credit needs the link's latency to get back.
 template <class T>
 struct InPortOf {
   WireOf<T>* wire = nullptr;
   Cycle latency = 1;
+  std::shared_ptr<const FarClock> clock{};  ///< of a link by another clock, whose cycles the latency then is
 
   Cycle next() const { return wire->packets.next(); }
   const T& front() const { return wire->packets.front(); }
@@ -42,6 +61,8 @@ struct InPortOf {
 
   T take(Cycle now) {
     if (const Cycle arrival = wire->packets.next(); arrival < now) note_wait(arrival, now);
+    if (clock != nullptr) [[unlikely]]
+      return wire->packets.take(clock->to_link.enter(now + clock->credit_cycles) + latency);
     return wire->packets.take(now + latency);
   }
 
@@ -64,6 +85,10 @@ class OutPortOf {
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
   /// From now on the link has faults.
   void fail(const LinkFaultTimer& faults) { faults_ = std::make_unique<LinkFaultTimer>(faults); }
+  /// The link goes by another clock than its sender; its latency is by its own. Without faults.
+  void cross(const ClockRatio& to_link, Cycle node_cycles) {
+    near_ = std::make_unique<NearClock>(NearClock{to_link, node_cycles});
+  }
   /// From now on the packets that it sends are noted.
   void record(const LinkRecorder& recorder) { recorder_ = recorder; }
 
@@ -126,7 +151,20 @@ class OutPortOf {
   /// The time from which the first packet waits for a credit, if none comes before; kNever if it need not wait.
   Cycle blocked_from() const { return awaits_credit() ? wants_to_start() : kNever; }
   /// Cycles before `end` in which the link moved something; not before the last packet was sent.
-  Cycle busy(Cycle end = kNever) const { return free_at_ <= end ? busy_ : busy_ - std::min(busy_, free_at_ - end); }
+  Cycle busy(Cycle end = kNever) const {
+    if (near_ != nullptr) [[unlikely]]
+      return near_->to_link.before(moved(end));
+    return free_at_ <= end ? busy_ : busy_ - std::min(busy_, free_at_ - end);
+  }
+  /// The same by the clock of the link; `end` by that of the sender.
+  Cycle moved(Cycle end = kNever) const {
+    if (near_ == nullptr) [[likely]]
+      return busy(end);
+    const Cycle edge = end == kNever ? kNever : near_->to_link.to_network(end);
+    return near_->link_free <= edge ? near_->busy : near_->busy - std::min(near_->busy, near_->link_free - edge);
+  }
+  /// The first cycle in which another packet may be sent, for want of the link.
+  Cycle free_at() const { return free_at_; }
   Cycle stalled() const { return stalled_; }  ///< cycles in which a packet waited for a credit
   std::uint64_t packets() const { return packets_; }
   std::uint64_t bytes() const { return wire_->packets.bytes_sent(); }
@@ -168,17 +206,28 @@ class OutPortOf {
     Flight flight{now + latency_ + (cut_through ? 0 : cycles - 1), now + cycles, cycles};
     if (faults_) [[unlikely]]
       flight = uncertain_flight(now, cycles, cut_through);
+    else if (near_) [[unlikely]]
+      flight = crossing_flight(now, cycles, cut_through);
     free_at_ = flight.link_free;
     wire_->packets.send(flight.arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
       if (recorder_.slices != nullptr) [[unlikely]]
-        recorder_.note(token, now, free_at_, flight.arrival);
+        recorder_.note(token, now, free_at_, near_ ? near_->to_link.to_core(flight.arrival) : flight.arrival);
     }
     --credits_;
     busy_ += flight.busy;
     ++packets_;
   }
   using Flight = LinkFaultTimer::Delivery;
+  /// Out of line, as few links have a clock of their own. The arrival is by the clock of the link.
+  [[gnu::noinline]] Flight crossing_flight(Cycle now, Cycle cycles, bool cut_through) {
+    NearClock& near = *near_;
+    const Cycle edge = std::max(near.to_link.enter(now + near.node_cycles), near.link_free);
+    near.link_free = edge + cycles;
+    near.busy += cycles;
+    const Cycle next = std::max(now + 1, near.leaves_for(near.link_free));
+    return {edge + latency_ + (cut_through ? 0 : cycles - 1), next, 0};
+  }
   /// Out of line, as few links have faults.
   [[gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {
     Flight flight = faults_->send(now, cycles);
@@ -197,6 +246,7 @@ class OutPortOf {
   std::uint64_t packets_ = 0;
   std::unique_ptr<LinkFaultTimer> faults_;  // null: it has none
   Cycle last_arrival_ = 0;                  // with faults
+  std::unique_ptr<NearClock> near_;         // null: the link goes by the clock of its sender
   LinkRecorder recorder_;
 };
 

@@ -5,8 +5,8 @@
 
 namespace carousel::ringbus::cycle {
 
-GrantRing::GrantRing(const RingShape& shape, std::vector<RingStation> stations, RingLinks links)
-    : RingFabric(shape, std::move(stations), std::move(links)),
+GrantRing::GrantRing(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks links)
+    : RingFabric(shape, std::move(ends), std::move(links)),
       rules_(shape.drawn.drawn->stops),
       stops_(shape.stops),
       lanes_(shape.lanes()) {
@@ -15,7 +15,7 @@ GrantRing::GrantRing(const RingShape& shape, std::vector<RingStation> stations, 
 
 Cycle GrantRing::next() const {
   Cycle first = kNever;
-  for (std::uint32_t i = 0; i < shape_.stops; ++i) first = std::min(first, stops_[i].asks ? 0 : stations_[i].due());
+  for (std::uint32_t i = 0; i < shape_.stops; ++i) first = std::min(first, stops_[i].asks ? 0 : ends_[i]->due());
   return first == kNever ? first : std::max(first, now_ + 1);
 }
 
@@ -41,8 +41,8 @@ void GrantRing::step(Cycle now) {
 void GrantRing::ask(Cycle now) {
   for (std::uint32_t i = 0; i < shape_.stops; ++i) {
     Stop& stop = stops_[i];
-    if (stop.asks || stations_[i].due() > now) continue;
-    stop.packet = stations_[i].take(now);
+    if (stop.asks || ends_[i]->due() > now) continue;
+    stop.packet = ends_[i]->take(now);
     stop.asks = true;
     stop.granted_after = now + static_cast<Cycle>(rules_.grant_cycles);
   }
@@ -93,7 +93,7 @@ bool GrantRing::grant(std::uint32_t at, Cycle now) {
     stops_[packet.to].in_free = head + beats;
     stop.asks = false;
     ++use_.starts;
-    stations_[packet.to].arrive(packet, head + beats - 1);
+    ends_[packet.to]->arrive(packet, head + beats - 1);
     return true;
   }
   return false;

@@ -19,7 +19,7 @@ namespace carousel::ringbus::cycle {
 /// A packet of B beats over h links takes, with nobody in its way, grant_cycles + h latency_cycles + B - 1.
 class GrantRing final : public RingFabric {
  public:
-  GrantRing(const RingShape& shape, std::vector<RingStation> stations, RingLinks links);
+  GrantRing(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks links);
 
   Cycle next() const override;
   void step(Cycle now) override;

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
+#include "ringbus/cycle/rings/ring_end.h"
 #include "ringbus/cycle/rings/ring_shape.h"
-#include "ringbus/cycle/rings/ring_station.h"
-#include "ringbus/cycle/traffic/traffic_result.h"
+#include "ringbus/results/stop_ring_use.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -46,19 +48,21 @@ class RingFabric {
   virtual Cycle next() const = 0;
   virtual void step(Cycle now) = 0;
 
-  const std::vector<RingStation>& stations() const { return stations_; }
   const RingLinks& links() const { return links_; }
   const StopRingUse& use() const { return use_; }
 
  protected:
-  /// Keeps a reference to the shape. Stations by stop.
-  RingFabric(const RingShape& shape, std::vector<RingStation> stations, RingLinks links)
-      : shape_(shape), stations_(std::move(stations)), links_(std::move(links)) {}
+  /// Keeps references to the shape and the ends, by stop.
+  RingFabric(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks links)
+      : shape_(shape), ends_(std::move(ends)), links_(std::move(links)) {}
 
   const RingShape& shape_;
-  std::vector<RingStation> stations_;
+  std::vector<RingEnd*> ends_;
   RingLinks links_;
   StopRingUse use_;
 };
+
+/// The ring of the rule that its drawing names. Keeps references to the shape and the ends.
+std::unique_ptr<RingFabric> make_ring(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks links);
 
 }  // namespace carousel::ringbus::cycle

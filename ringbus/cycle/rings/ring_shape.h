@@ -64,7 +64,7 @@ struct RingShape {
   Cycle grant_cycles;
 };
 
-/// A packet of synthetic traffic, or the answer to one.
+/// A packet on a ring: of synthetic traffic, the answer to one, or one that `tag` names.
 struct RingPacket {
   Cycle created = 0;               ///< by the clock of the resources; of an answer, that of what it answers
   std::uint32_t from = 0, to = 0;  ///< stops
@@ -74,6 +74,7 @@ struct RingPacket {
   std::uint32_t bytes = 0;
   bool answer = false;
   Cycle ready = 0;  ///< at its stop, by the clock of the network
+  std::uint32_t tag = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -5,8 +5,8 @@
 
 namespace carousel::ringbus::cycle {
 
-SlotRing::SlotRing(const RingShape& shape, std::vector<RingStation> stations, RingLinks links)
-    : RingFabric(shape, std::move(stations), std::move(links)),
+SlotRing::SlotRing(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks links)
+    : RingFabric(shape, std::move(ends), std::move(links)),
       length_(shape.stops * shape.hop),
       port_cycles_(shape.port_cycles()),
       fair_after_(static_cast<Cycle>(shape.drawn.drawn->stops.fair_after_cycles)),
@@ -18,7 +18,7 @@ Cycle SlotRing::next() const {
   const Cycle round = length_ + 2 * port_cycles_;
   if (flying_.size() > unused_.size()) return now_ - moved_ > round ? kNever : now_ + 1;
   Cycle first = kNever;
-  for (const RingStation& station : stations_) first = std::min(first, station.due());
+  for (const RingEnd* end : ends_) first = std::min(first, end->due());
   return first == kNever ? first : std::max(first, now_ + 1);
 }
 
@@ -66,13 +66,13 @@ void SlotRing::get_off(std::uint32_t stop, Cycle now) {
   moved_ = now;
   const std::uint32_t id = std::exchange(oldest->packet, kNone);
   if (--flying_[id].left > 0) return;
-  stations_[stop].arrive(flying_[id].packet, now + port_cycles_ - 1);
+  ends_[stop]->arrive(flying_[id].packet, now + port_cycles_ - 1);
   unused_.push_back(id);
 }
 
 void SlotRing::get_on(std::uint32_t stop, Cycle now) {
   Stop& here = stops_[stop];
-  if (here.packet == kNone && stations_[stop].due() <= now) begin_packet(stop, now);
+  if (here.packet == kNone && ends_[stop]->due() <= now) begin_packet(stop, now);
   if (here.packet == kNone || here.ready > now) return;
   Slot* const free = free_slot(stop, now);
   if (free == nullptr) {
@@ -92,7 +92,7 @@ void SlotRing::get_on(std::uint32_t stop, Cycle now) {
 
 void SlotRing::begin_packet(std::uint32_t stop, Cycle now) {
   Stop& here = stops_[stop];
-  const RingPacket packet = stations_[stop].take(now);
+  const RingPacket packet = ends_[stop]->take(now);
   if (unused_.empty()) {
     unused_.push_back(static_cast<std::uint32_t>(flying_.size()));
     flying_.emplace_back();

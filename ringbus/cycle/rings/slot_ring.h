@@ -24,7 +24,7 @@ namespace carousel::ringbus::cycle {
 ///     F p - 1 + h latency_cycles + p - 1.
 class SlotRing final : public RingFabric {
  public:
-  SlotRing(const RingShape& shape, std::vector<RingStation> stations, RingLinks links);
+  SlotRing(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks links);
 
   /// Also kNever if flits are under way of which none gets off any more, which would be a fault of this class.
   Cycle next() const override;

@@ -11,8 +11,13 @@ TravellingGroups::TravellingGroups(Machine& machine, const ShadingSettings& sett
       clients_(clients),
       ports_(ports),
       latency_(control_latency(settings.link)),
-      capacity_(settings.addressed ? settings.slots / clients.size() : settings.slots),
-      free_slots_(settings.addressed ? clients.size() : 1, capacity_) {}
+      capacity_{settings.slots} {
+  if (settings.addressed) {
+    capacity_.clear();
+    for (std::size_t r = 0; r < clients.size(); ++r) capacity_.push_back(machine.stores[r]->slots());
+  }
+  free_slots_ = capacity_;
+}
 
 void TravellingGroups::add(std::uint32_t issuer, const RayGroup& group) {
   std::vector<std::uint64_t> left(free_slots_.size());
@@ -20,7 +25,7 @@ void TravellingGroups::add(std::uint32_t issuer, const RayGroup& group) {
     const std::size_t at = group.addresses.empty() ? 0 : group.addresses[i].value;
     if (i == 0 || left[at] == 0) {
       waiting_.push_back({issuer, {}});
-      std::fill(left.begin(), left.end(), capacity_);
+      left = capacity_;
     }
     --left[at];
     RayGroup& part = waiting_.back().group;

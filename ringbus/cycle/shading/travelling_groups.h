@@ -42,7 +42,7 @@ class TravellingGroups {
   LoadPorts& ports_;
   Cycle latency_;
   std::deque<Traveller> waiting_;          // for free slots
-  std::uint64_t capacity_;                 // slots of a resource that addresses name, or of all
+  std::vector<std::uint64_t> capacity_;    // slots by resource that addresses name, or of all in the first place
   std::vector<std::uint64_t> free_slots_;  // by resource that addresses name, or of all in the first place
 };
 

@@ -49,9 +49,9 @@ std::vector<ConfigIssue> check_shape_buffer(const Config& config, const accel::A
         config.collections.key == CollectionKey::kBlock ? "block of memory" : "strip", least, kib);
   };
   check("memory.shape_buffer_kib", config.memory.shape_buffer_kib);
-  for (std::size_t i = 0; i < config.topology.overrides.size(); ++i)
-    if (const auto own = config.topology.overrides[i].shape_buffer_kib)
-      check(fmt::format("topology.overrides.{}.shape_buffer_kib", i), *own);
+  for_each_own(config.topology, [&](const OwnOf& one) {
+    if (const auto own = one.keys->shape_buffer_kib) check(own_place(one) + ".shape_buffer_kib", *own);
+  });
   return issues;
 }
 

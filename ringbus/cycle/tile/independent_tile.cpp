@@ -29,7 +29,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       samples_(settings.observed.samples, kFirstPortCounter),
       recording_(settings.recording) {
   if (recording_.slices != nullptr && recording_.ray == nullptr)
-    tester_.record(*recording_.slices, recording_.track + 1 + static_cast<std::uint32_t>(settings.testers.contexts));
+    tester_.record(*recording_.slices, recording_.track + 1 + recording_.contexts);
 }
 
 Cycle IndependentTile::next() const {

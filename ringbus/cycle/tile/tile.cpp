@@ -56,7 +56,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
                counter_index(PortCounter::kBusy, ports_.out.size(), kFirstPortCounter)),
       ledger_(tester_),
       steps_always_(dispatcher_.has_window() || issue_.waits_for_idle() || fault_.is_ahead()) {
-  recorder_.record_units(tester_, static_cast<std::size_t>(settings.testers.contexts));
+  recorder_.record_units(tester_, settings.recording.contexts);
 }
 
 // ---- a step

@@ -22,11 +22,13 @@ std::uint16_t packet_cycles(const TrafficNodeSettings& settings, const Topology:
 }  // namespace
 
 RoutedNode::RoutedNode(ResourceId id, const Topology& topology, const TrafficNodeSettings& settings,
-                       std::optional<TrafficSource> source, std::uint64_t packets, TrafficWindow window, Ports ports)
+                       const MachineClocks& clocks, std::optional<TrafficSource> source, std::uint64_t packets,
+                       TrafficWindow window, Ports ports)
     : TrafficAgent(of_sink(settings), window),
       id_(id),
       topology_(topology),
       settings_(settings),
+      clocks_(clocks),
       claim_cycles_(topology.claim_cycles(id)),
       in_(std::move(ports.in)),
       out_(std::move(ports.out)),
@@ -76,7 +78,7 @@ void RoutedNode::create() {
   if (created < window_.begin) return;
   ++offered_.packets;
   offered_.routers += hops + 1u;
-  offered_.travel += settings_.clock.leave(there + alone(to)) - created - settings_.inject_cycles;
+  offered_.travel += alone(to, there) - created - settings_.inject_cycles;
 }
 
 /// Puts the packets that have left the source by `now` into its queues, as far as these have places.
@@ -101,18 +103,37 @@ void RoutedNode::fill_source(Cycle now) {
   }
 }
 
-/// Cycles of a packet's way if no other is on it, by the clock of the network.
-Cycle RoutedNode::alone(ResourceId to) const {
-  if (to == id_) return settings_.flits - 1u;
-  Cycle sum = 0;
+/// When a packet that is ready at `there`, by the clock of the node, would be delivered to the sink of its destination
+/// if no other were on its way; by the clock of the resources.
+Cycle RoutedNode::alone(ResourceId to, Cycle there) const {
+  std::vector<Cycle> pieces(settings_.pieces);  // of each piece, by the clock of the node where it is
+  for (Cycle& piece : pieces) piece = there++;
+  if (to == id_ && settings_.pieces == 1) pieces[0] += settings_.flits - 1u;
   for (ResourceId at = id_; at != to;) {
     const TopologyPlan::Exit exit = topology_.exit(at, to);
     const Topology::Wire& wire = topology_.wires()[topology_.ports(at).out[exit.port]];
-    sum += static_cast<Cycle>(wire.node_cycles + wire.latency_cycles);
-    if (!exit.through) sum += packet_cycles(settings_, wire) - 1u;
+    over_link(wire, exit.through, pieces);
     at = wire.to;
   }
-  return sum;
+  Cycle tail = 0;  // the sink takes a piece in each cycle
+  for (const Cycle piece : pieces) tail = std::max(tail + 1, piece);
+  return clocks_.from_core(topology_.mhz(to)).leave(tail);
+}
+
+/// Moves each piece on over a link that is free.
+void RoutedNode::over_link(const Topology::Wire& wire, bool through, std::vector<Cycle>& pieces) const {
+  const ClockRatio near = clocks_.between(topology_.mhz(wire.from), wire.mhz),
+                   far = clocks_.between(wire.mhz, topology_.mhz(wire.to));
+  const Cycle cycles = settings_.pieces > 1 ? 1 : packet_cycles(settings_, wire);
+  Cycle free = 0, leaves = 0;  // of the link, and of the node, which passes a piece on in each of its cycles
+  for (Cycle& piece : pieces) {
+    const auto wait = static_cast<Cycle>(wire.node_cycles);
+    const Cycle at = std::max({piece, leaves, free > 0 ? near.first_for(free, wait) : 0});
+    leaves = at + 1;
+    const Cycle edge = near.enter(at + wait);
+    free = edge + cycles;
+    piece = far.enter(edge + static_cast<Cycle>(wire.latency_cycles) + (through ? 0 : cycles - 1));
+  }
 }
 
 // ---- time
@@ -158,7 +179,7 @@ void RoutedNode::pass_marks(Cycle now) {
 
 Cycle RoutedNode::busy_at(const Exit& exit, Cycle at) const {
   Cycle sum = 0;
-  for (std::size_t channel = 0; channel < exit.channels; ++channel) sum += out_[exit.first + channel].busy(at);
+  for (std::size_t channel = 0; channel < exit.channels; ++channel) sum += out_[exit.first + channel].moved(at);
   return sum;
 }
 
@@ -171,7 +192,7 @@ TrafficAgent::Moved RoutedNode::moved(std::size_t port) const {
   for (std::size_t channel = 0; channel < exits_[port].channels; ++channel) {
     const Out& out = out_[exits_[port].first + channel];
     sum.packets += out.packets();
-    sum.busy += out.busy();
+    sum.busy += out.moved();
     sum.stalled += out.stalled();
   }
   sum.packets /= settings_.pieces;
@@ -283,7 +304,7 @@ void RoutedNode::move(std::size_t from, std::size_t to, Cycle now) {
     token.channel = static_cast<std::uint16_t>(wanted);
     token.link_cycles = exit.cycles;
     out_[channel].launch(token, now, topology_.exit(id_, ResourceId(token.stop)).through);
-    exit.free = entry.free = now + exit.cycles;
+    exit.free = entry.free = out_[channel].free_at();
   }
   claimed_[queue] = entry.free + (last ? claim_cycles_ : 0);
 }

@@ -9,6 +9,7 @@
 #include "ringbus/cycle/traffic/traffic_agent.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
 #include "ringbus/time/fifo.h"
+#include "ringbus/time/machine_clocks.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus::cycle {
@@ -32,8 +33,9 @@ namespace carousel::ringbus::cycle {
 ///
 /// A packet of L flits, from its creation until its last flit is delivered and if no other packet is in its way, takes
 ///     inject_cycles + sum over its links of (node_cycles + latency_cycles) + L - 1 + eject_cycles
-/// where node_cycles are those of the node before the link. A packet that changes to a link of another width, or at a
-/// router with `forward: whole`, is stored whole and takes its length once more.
+/// where node_cycles are those of the node before the link. Where nodes and links go by several clocks, each flit
+/// passes from one to the next as ClockRatio says, and alone() follows it. A packet that changes to a link of another
+/// width, or at a router with `forward: whole`, is stored whole and takes its length once more.
 class RoutedNode final : public TrafficAgent {
  public:
   /// By link, and within a link by channel.
@@ -42,8 +44,8 @@ class RoutedNode final : public TrafficAgent {
     std::vector<Out> out;
   };
 
-  /// Keeps a reference to the topology. `source`: of a resource, from which `packets` are taken.
-  RoutedNode(ResourceId id, const Topology& topology, const TrafficNodeSettings& settings,
+  /// Keeps references to the topology and the clocks. `source`: of a resource, from which `packets` are taken.
+  RoutedNode(ResourceId id, const Topology& topology, const TrafficNodeSettings& settings, const MachineClocks& clocks,
              std::optional<TrafficSource> source, std::uint64_t packets, TrafficWindow window, Ports ports);
 
   Cycle next() const override;
@@ -93,7 +95,8 @@ class RoutedNode final : public TrafficAgent {
   Cycle busy_at(const Exit& exit, Cycle at) const;
   void create();
   void fill_source(Cycle now);
-  Cycle alone(ResourceId to) const;
+  Cycle alone(ResourceId to, Cycle there) const;
+  void over_link(const Topology::Wire& wire, bool through, std::vector<Cycle>& pieces) const;
   bool of_source(std::size_t queue) const { return queue >= in_.size(); }
   /// When the first packet of a queue may leave, as far as the queue goes; kNever without one.
   Cycle ready(std::size_t queue) const;
@@ -120,6 +123,7 @@ class RoutedNode final : public TrafficAgent {
   ResourceId id_;
   const Topology& topology_;
   TrafficNodeSettings settings_;
+  const MachineClocks& clocks_;
   Cycle claim_cycles_;
   std::vector<In> in_;
   std::vector<Out> out_;

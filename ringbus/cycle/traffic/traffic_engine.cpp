@@ -10,6 +10,7 @@
 #include "ringbus/cycle/traffic/traffic_node.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
 #include "ringbus/protocol/flow_rules.h"
+#include "ringbus/time/machine_clocks.h"
 #include "ringbus/time/windows.h"
 #include "ringbus/topology/drawn_shape.h"
 #include "ringbus/topology/topology.h"
@@ -20,7 +21,7 @@ namespace cycle {
 
 namespace {
 
-/// Builds the nodes of a network and the links between them, and runs them. Its time is that of the network's clock.
+/// Builds the nodes of a network and the links between them, and runs them. Each node and link goes by its own clock.
 class TrafficRun {
  public:
   TrafficRun(const Config& config, const RunOptions& options)
@@ -30,7 +31,7 @@ class TrafficRun {
         flow_(config.topology.flow, topology_.direct() || topology_.routed()),
         ends_(traffic_ends(config.topology, config.workload.traffic)),
         plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ends_),
-        clock_(network_clock(config.clocks, config.engine.clock_mhz)) {
+        clocks_(config.engine.clock_mhz, config.clocks.synchroniser_cycles) {
     const TrafficConfig& traffic = config.workload.traffic;
     const auto width = static_cast<std::uint64_t>(config.topology.link.bytes_per_cycle);
     const MessageKind packets = channels_.carry({"packets", "resources", "neighbours", "links", width},
@@ -41,13 +42,19 @@ class TrafficRun {
       const Topology::Wire& wire = topology_.wires()[i];
       const ChannelEnds ends{wire.from.value, wire.to.value, static_cast<Cycle>(wire.latency_cycles)};
       first_wire_.push_back(wires_.size());
-      for (std::uint32_t n = 0; n < (topology_.routed() ? topology_.channels().channels[i] : 1); ++n)
+      for (std::uint32_t n = 0; n < (topology_.routed() ? topology_.channels().channels[i] : 1); ++n) {
         wires_.push_back(std::make_unique<WireOf<TrafficToken>>(channels_.at(packets, ends)));
+        wires_.back()->packets.cross(clocks_.between(wire.mhz, topology_.mhz(wire.to)),
+                                     clocks_.between(wire.mhz, topology_.mhz(wire.from)));
+      }
+      clocks_.use(wire.mhz);
       if (flow_.counts_deliveries())
         acks_.push_back(std::make_unique<Channel<TrafficAck>>(channels_.at(deliveries, ends)));
     }
     first_wire_.push_back(wires_.size());
-    TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link, clock_);
+    for (std::uint32_t n = 0; n < topology_.resources() + topology_.hubs().size(); ++n)
+      clocks_.use(topology_.mhz(ResourceId(n)));
+    TrafficNodeSettings settings = traffic_node_settings(traffic, config.topology.link);
     if (topology_.routed()) {
       if (topology_.flits_apart()) settings.pieces = settings.flits;
       add_routed(settings);
@@ -68,14 +75,17 @@ class TrafficRun {
     bool stopped = false;
     WakeupTable wakeups(parts);
     std::vector<const Agent*> agents;
-    for (const auto& node : nodes_) agents.push_back(node.get());
+    for (std::uint32_t n = 0; n < nodes_.size(); ++n) {
+      nodes_[n]->run_by(clocks_.to_fastest(topology_.mhz(ResourceId(n))));
+      agents.push_back(nodes_[n].get());
+    }
     channels_.connect(wakeups, agents);
     run_windows(parts, wakeups, std::min(link_latency(), channels_.least_latency()), [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
         last_report = now;
-        const auto all = static_cast<double>(clock_.to_network(plan_.window.end));
+        const auto all = static_cast<double>(clocks_.to_fastest(0).to_network(plan_.window.end));
         const double done = std::min(1.0, static_cast<double>(reached) / all);
         options_.progress(static_cast<std::uint64_t>(done * static_cast<double>(config_.workload.traffic.packets)));
       }
@@ -99,6 +109,9 @@ class TrafficRun {
   void add_routed(const TrafficNodeSettings& settings) {
     const auto resources = static_cast<std::uint32_t>(topology_.resources());
     for (std::uint32_t n = 0; n < resources + topology_.hubs().size(); ++n) {
+      const std::int64_t own = topology_.mhz(ResourceId(n));
+      TrafficNodeSettings node = settings;
+      node.clock = clocks_.from_core(own);
       std::optional<TrafficSource> source;
       if (n < resources)
         source.emplace(config_.workload.traffic, static_cast<std::uint64_t>(config_.image.seed), resources, ends_,
@@ -106,16 +119,25 @@ class TrafficRun {
       RoutedNode::Ports ports;
       for (const std::uint32_t i : topology_.ports(ResourceId(n)).in) {
         const Topology::Wire& wire = topology_.wires()[i];
+        const bool crosses = wire.mhz != own;
+        std::shared_ptr<const FarClock> far;
+        if (crosses)
+          far = std::make_shared<const FarClock>(
+              FarClock{clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.credit_cycles)});
         for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
-          ports.in.push_back({wires_[w].get(), static_cast<Cycle>(wire.latency_cycles + wire.credit_cycles)});
+          ports.in.push_back(
+              {wires_[w].get(), static_cast<Cycle>(wire.latency_cycles + (crosses ? 0 : wire.credit_cycles)), far});
       }
       for (const std::uint32_t i : topology_.ports(ResourceId(n)).out) {
         const Topology::Wire& wire = topology_.wires()[i];
-        for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
-          ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles + wire.node_cycles),
+        const bool crosses = wire.mhz != own;
+        for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w) {
+          ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles + (crosses ? 0 : wire.node_cycles)),
                                  static_cast<std::uint32_t>(wire.depth) * settings.pieces, 1);
+          if (crosses) ports.out.back().cross(clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.node_cycles));
+        }
       }
-      nodes_.push_back(std::make_unique<RoutedNode>(ResourceId(n), topology_, settings, std::move(source),
+      nodes_.push_back(std::make_unique<RoutedNode>(ResourceId(n), topology_, node, clocks_, std::move(source),
                                                     n < resources ? plan_.packets[n] : 0, plan_.window,
                                                     std::move(ports)));
     }
@@ -154,7 +176,6 @@ class TrafficRun {
     TrafficResult out;
     out.window_begin = plan_.window.begin;
     out.window_end = plan_.window.end;
-    out.network_window = clock_.to_network(out.window_end) - clock_.to_network(out.window_begin);
     out.packets = static_cast<std::uint64_t>(config_.workload.traffic.packets);
     out.flits = traffic_node_settings(config_.workload.traffic, config_.topology.link).flits;
     for (const auto& node : nodes_) {
@@ -168,7 +189,6 @@ class TrafficRun {
       out.travel += offered.travel;
       out.latency.add(node->sink().latency());
     }
-    out.network_cycles = clock_.to_network(out.cycles);
     for (const Topology::Wire& wire : topology_.wires()) {
       const TrafficAgent& node = *nodes_[wire.from.value];
       const std::size_t exit = topology_.out_port_of(out.links.size());
@@ -179,7 +199,17 @@ class TrafficRun {
         queue.packet_cycles += wires_[i]->queue.packet_cycles;
         queue.most = std::max(queue.most, wires_[i]->queue.most);
       }
-      out.links.push_back({wire.from.value, wire.to.value, {moved.busy, moved.stalled}, queue});
+      const ClockRatio to_link = clocks_.from_core(wire.mhz);
+      const Cycle cycles = to_link.to_network(out.cycles);
+      const Cycle stalled = clocks_.between(topology_.mhz(wire.from), wire.mhz).floor_to_network(moved.stalled);
+      out.link_cycles.push_back(cycles);
+      out.link_windows.push_back(to_link.to_network(out.window_end) - to_link.to_network(out.window_begin));
+      out.links.push_back({wire.from.value,
+                           wire.to.value,
+                           {moved.busy, std::min(stalled, cycles - std::min(cycles, moved.busy))},
+                           queue,
+                           0,
+                           wire.mhz});
       out.link_packets.push_back(moved.packets);
       out.flit_hops += moved.packets * out.flits;
     }
@@ -192,7 +222,7 @@ class TrafficRun {
   FlowRules flow_;
   TrafficEnds ends_;
   TrafficPlan plan_;
-  ClockRatio clock_;
+  MachineClocks clocks_;
   ChannelList channels_;
   std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires(), each with its virtual channels
   std::vector<std::size_t> first_wire_;                       // by link, and behind the last

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <numeric>
 #include <optional>
 #include <vector>
 
@@ -8,43 +9,35 @@
 #include "core/config/fields/workload.h"
 #include "core/numeric/latency_histogram.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/results/stop_ring_use.h"
 
 namespace carousel::ringbus {
-
-/// What stops without queues have done, in the whole run and by the clock of the network.
-struct StopRingUse {
-  std::uint64_t extra_rounds = 0;  ///< flits that found the port busy, each time once
-  Cycle longest_ride = 0;          ///< of a flit, from getting on until it gets off
-  Cycle longest_wait = 0;          ///< of a packet that was the first at its stop
-  std::uint64_t reservations = 0;  ///< slots or grants reserved after fair_after_cycles
-  std::uint64_t starts = 0;        ///< packets that have left their stops, answers included
-};
 
 /// The counts of a run of synthetic traffic. Latencies, offered and accepted load are of the window.
 struct TrafficResult {
   bool complete = true;  ///< false: stopped early
   Cycle cycles = 0;      ///< until the last packet was delivered
   Cycle window_begin = 0, window_end = 0;
-  Cycle network_cycles = 0, network_window = 0;  ///< the run and the window by the clock of the network
-  std::uint64_t packets = 0, delivered = 0;      ///< in all
-  std::uint64_t flits = 1;                       ///< flits of a packet
-  std::uint64_t offered = 0;                     ///< packets created within the window
-  std::uint64_t accepted = 0;                    ///< packets delivered within the window
-  std::uint64_t accepted_flit_hops = 0;          ///< links that their flits crossed
-  std::uint64_t routers = 0;                     ///< visited by the packets offered, first and last included
-  std::uint64_t travel = 0;                      ///< cycles that these would be on their way if each were alone
-  std::uint64_t flit_hops = 0;                   ///< links crossed by flits, in the whole run
-  LatencyHistogram latency;                      ///< latency of the packets offered
+  std::uint64_t packets = 0, delivered = 0;  ///< in all
+  std::uint64_t flits = 1;                   ///< flits of a packet
+  std::uint64_t offered = 0;                 ///< packets created within the window
+  std::uint64_t accepted = 0;                ///< packets delivered within the window
+  std::uint64_t accepted_flit_hops = 0;      ///< links that their flits crossed
+  std::uint64_t routers = 0;                 ///< visited by the packets offered, first and last included
+  std::uint64_t travel = 0;                  ///< cycles that these would be on their way if each were alone
+  std::uint64_t flit_hops = 0;               ///< links crossed by flits, in the whole run
+  LatencyHistogram latency;                  ///< latency of the packets offered
   std::vector<cycle::LinkUse> links;
   std::vector<std::uint64_t> link_packets;  ///< by link
-  std::vector<Cycle> busy_in_window;        ///< by link: cycles of the window in which it moved a flit
-  std::optional<StopRingUse> stops;         ///< of a ring with stops
+  std::vector<Cycle> busy_in_window;        ///< by link: cycles of the window in which it moved a flit, by its clock
+  std::vector<Cycle> link_cycles, link_windows;  ///< by link: the run and the window by its clock
+  std::optional<StopRingUse> stops;              ///< of a ring with stops
   double wall_seconds = 0;
   std::size_t threads = 1;
 
   /// Part of what all links could move within the window that packets delivered in it needed.
   double accepted_of_links() const {
-    const double most = static_cast<double>(links.size()) * static_cast<double>(network_window);
+    const double most = std::accumulate(link_windows.begin(), link_windows.end(), 0.0);
     return most == 0 ? 0 : static_cast<double>(accepted_flit_hops) / most;
   }
   double routers_mean() const { return offered == 0 ? 0 : static_cast<double>(routers) / static_cast<double>(offered); }

@@ -19,13 +19,8 @@ struct TrafficNodeSettings {
   std::uint16_t flits = 1;   ///< flits of a packet
   bool shared_queue = true;  ///< the source has one queue for all packets
   std::uint16_t pieces = 1;  ///< in which a packet goes from node to node: its flits, or the packet
-  ClockRatio clock = {};     ///< of the network, by which all but creation and delivery goes
+  ClockRatio clock = {};     ///< of the node, by which all but creation and delivery goes
 };
-
-/// `core_mhz`: engine.clock_mhz.
-inline ClockRatio network_clock(const ClocksConfig& clocks, std::int64_t core_mhz) {
-  return {core_mhz, clocks.noc.value_or(core_mhz), clocks.synchroniser_cycles};
-}
 
 inline TrafficNodeSettings traffic_node_settings(const TrafficConfig& traffic, const LinkConfig& link,
                                                  ClockRatio clock = {}) {

@@ -28,15 +28,16 @@ void run_to_rest(const std::vector<Agent*>& agents) {
 }  // namespace
 
 MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
-                           const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
+                           const AgentNumbers& agents, const MemoryConfig& config,
+                           const std::vector<MemoryConfig>& own_configs, std::int64_t clock_mhz,
                            const std::vector<ShapeCache::Client>& clients,
                            const std::vector<std::vector<ShapeCache::Client>>& others, const DrawnAskers* drawn)
     : shared_by_(static_cast<std::size_t>(config.shared_by)) {
   std::vector<ShapeCache::OwnCache> own;
-  const MemoryConfig own_config = ShapeCache::own_cache(config);
   const Cycle own_answer = agents.caches_drawn ? kDoorCycles : ShapeCache::answer_latency(config);
   for (std::size_t r = 0; r < clients.size() && own_kinds; ++r) {
     const std::uint32_t l1 = agents.own_cache(r), l2 = agents.cache_behind(r);
+    const MemoryConfig own_config = ShapeCache::own_cache(own_configs[r]);
     Channel<std::uint64_t>& down =
         channel(own_down_, list, own_kinds->requests, {l1, l2, MemoryAgent::request_latency(own_config)});
     Channel<std::uint64_t>& up = channel(own_up_, list, own_kinds->lines, {l2, l1, own_answer});

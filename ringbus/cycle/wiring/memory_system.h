@@ -29,11 +29,12 @@ struct DrawnAskers {
 /// The caches, each shared by some neighbouring resources, and the memory behind them; or as they are drawn.
 class MemorySystem {
  public:
-  /// `clients` by resource. `others`: by L2, those that ask it beside resources. `clock_mhz`: engine.clock_mhz. With
+  /// `clients` by resource, as `own_configs`, which their own caches follow. `others`: by L2, those that ask it beside
+  /// resources. `clock_mhz`: engine.clock_mhz. With
   /// own caches there are kinds of messages for them.
   MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
-               const AgentNumbers& agents, const MemoryConfig& config, std::int64_t clock_mhz,
-               const std::vector<ShapeCache::Client>& clients,
+               const AgentNumbers& agents, const MemoryConfig& config, const std::vector<MemoryConfig>& own_configs,
+               std::int64_t clock_mhz, const std::vector<ShapeCache::Client>& clients,
                const std::vector<std::vector<ShapeCache::Client>>& others, const DrawnAskers* drawn = nullptr);
   static std::size_t shared_caches(const MemoryConfig& config, std::int64_t resources) {
     return static_cast<std::size_t>((resources - 1) / config.shared_by + 1);

@@ -9,7 +9,9 @@
 #include "core/config/fields/topology.h"
 #include "ringbus/cycle/fabric/hub.h"
 #include "ringbus/cycle/fabric/ports.h"
+#include "ringbus/cycle/rings/ring_hub.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -19,10 +21,10 @@ class Network {
   /// Wires that packets share with others, each with the number of its agent.
   using SharedWires = std::map<std::uint32_t, std::uint32_t>;
 
-  /// Keeps a reference to the machine. `contexts`: packets that a resource may have in test at once. Nodes have the
-  /// topology's numbers in the list.
-  Network(ChannelList& list, const Machine& machine, const LinkConfig& link, const FaultsConfig& faults,
-          std::int64_t contexts, const SharedWires& shared = {});
+  /// Keeps a reference to the machine. `topology`: of its configuration. `contexts`: packets that a resource may have
+  /// in test at once, by resource. Nodes have the topology's numbers in the list.
+  Network(ChannelList& list, const Machine& machine, const TopologyConfig& topology, const FaultsConfig& faults,
+          std::vector<std::int64_t> contexts, MachineClocks clocks, const SharedWires& shared = {});
 
   /// The near and far ends of the links at a node, by port. Each node takes its own once.
   struct NodePorts {
@@ -32,6 +34,9 @@ class Network {
   NodePorts ports_at(ResourceId node) const;
 
   const std::vector<std::unique_ptr<Hub>>& hubs() const { return hubs_; }
+  const MachineClocks& clocks() const { return clocks_; }
+  /// Null unless the network is a ring whose stops have no queues.
+  const RingHub* ring() const { return ring_; }
   /// The far end of a wire, and its near end, which is the same but where others share it.
   Wire& far(std::size_t number) const { return far_[number] ? *far_[number] : *wires_[number]; }
   Wire& near(std::size_t number) const { return *wires_[number]; }
@@ -39,10 +44,12 @@ class Network {
  private:
   const Machine& machine_;
   FaultsConfig faults_;
-  std::size_t egress_places_;
+  std::vector<std::int64_t> contexts_;  // by resource
+  MachineClocks clocks_;
   std::vector<std::unique_ptr<Wire>> wires_;  // as the topology's
   std::vector<std::unique_ptr<Wire>> far_;    // likewise; null unless others share it
   std::vector<std::unique_ptr<Hub>> hubs_;
+  const RingHub* ring_ = nullptr;
 };
 
 }  // namespace carousel::ringbus::cycle

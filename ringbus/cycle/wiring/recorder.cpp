@@ -21,12 +21,12 @@ TimelineOptions slices_wanted(const Observation& observed) {
 
 }  // namespace
 
-Recorder::Recorder(const TestersConfig& testers, bool has_distributor, const Machine& machine,
-                   const Observation& observed)
+Recorder::Recorder(const TestersConfig& testers, std::int64_t most_contexts, bool has_distributor,
+                   const Machine& machine, const Observation& observed)
     : topology_(machine.topology),
       options_(slices_wanted(observed)),
       ray_(observed.ray),
-      contexts_(static_cast<std::uint32_t>(testers.contexts)),
+      contexts_(static_cast<std::uint32_t>(most_contexts)),
       testers_(has_distributor ? static_cast<std::uint32_t>(testers.distributor.testers) : 1),
       per_resource_(1 + contexts_ + testers_ * static_cast<std::uint32_t>(kUnitKinds.size()) + 2),
       has_distributor_(has_distributor),
@@ -38,7 +38,8 @@ Recorder::Recorder(const TestersConfig& testers, bool has_distributor, const Mac
 
 Recording Recorder::of_resource(ResourceId id) {
   if (!records_slices()) return {};
-  return {&slices_[id.value], &trips_, id.value * per_resource_, ray_ != nullptr ? &facts_[id.value] : nullptr};
+  return {&slices_[id.value], &trips_, id.value * per_resource_, ray_ != nullptr ? &facts_[id.value] : nullptr,
+          contexts_};
 }
 
 Recording Recorder::of_shading() {

@@ -15,8 +15,10 @@ namespace carousel::ringbus::cycle {
 /// The logs of a whole machine: one a node of the network, which its links share, and one of shading.
 class Recorder {
  public:
-  /// Keeps a reference to the topology. `has_distributor`: the machine's testers stand behind one.
-  Recorder(const TestersConfig& testers, bool has_distributor, const Machine& machine, const Observation& observed);
+  /// Keeps a reference to the topology. `most_contexts`: the most that a resource has. `has_distributor`: the machine's
+  /// testers stand behind one.
+  Recorder(const TestersConfig& testers, std::int64_t most_contexts, bool has_distributor, const Machine& machine,
+           const Observation& observed);
 
   Recording of_resource(ResourceId id);
   /// The recording of ray control and shading.

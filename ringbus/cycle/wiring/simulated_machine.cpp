@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/own_sections.h"
 #include "core/system/error.h"
 #include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/tile/tile.h"
@@ -20,7 +21,8 @@ std::optional<std::uint32_t> local_packets(const Config& config) {
   const Placement placement = config.rays.placement;
   if (config.topology.resources > 1 && (placement == Placement::kFirstTaker || placement == Placement::kAddressed))
     return std::nullopt;
-  return static_cast<std::uint32_t>(config.testers.contexts + 1 + config.memory.fetch_ahead);
+  return static_cast<std::uint32_t>(most_of_resources(
+      config, [](const OwnSections& one) { return one.testers.contexts + 1 + one.memory.fetch_ahead; }));
 }
 
 /// The resources and hubs have the topology's numbers.
@@ -55,10 +57,28 @@ ShadingSettings shading_settings(const Config& config) {
           config.topology.link,
           config.faults.resource,
           static_cast<std::size_t>(shader_workers(config)),
-          static_cast<std::size_t>(config.topology.resources * config.rays.slots_per_resource),
+          static_cast<std::size_t>(all_slots(config)),
           static_cast<std::size_t>(config.packets.rays),
           static_cast<std::uint64_t>(config.image.seed),
           config.rays.placement == Placement::kAddressed};
+}
+
+/// Packets that a resource may have in test at once, by resource.
+std::vector<std::int64_t> contexts_of(const Config& config) {
+  std::vector<std::int64_t> out;
+  for (std::int64_t r = 0; r < config.topology.resources; ++r) out.push_back(own_sections(config, r).testers.contexts);
+  return out;
+}
+
+std::int64_t most_contexts(const Config& config) {
+  return most_of_resources(config, [](const OwnSections& one) { return one.testers.contexts; });
+}
+
+/// As the resources ask it for shapes, by resource.
+std::vector<MemoryConfig> memory_of(const Config& config) {
+  std::vector<MemoryConfig> out;
+  for (std::int64_t r = 0; r < config.topology.resources; ++r) out.push_back(own_sections(config, r).memory);
+  return out;
 }
 
 bool calls_shader(const Config& config, const accel::Accel& accel) {
@@ -77,7 +97,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                         : nullptr),
       plan_(plan_parcels(config.topology, config.memory.line_bytes)),
       numbers_(agent_numbers(shared_.topology, config.memory, plan_)),
-      network_(channels_, shared_, config.topology.link, config.faults, config.testers.contexts,
+      network_(channels_, shared_, config.topology, config.faults, contexts_of(config),
+               MachineClocks(config.engine.clock_mhz, config.clocks.synchroniser_cycles),
                ParcelNetwork::shared_wires(plan_, numbers_)),
       kinds_(machine_kinds(
           channels_, config.topology.link, config.memory,
@@ -87,13 +108,15 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   if (plan_.any())
     parcels_ = std::make_unique<ParcelNetwork>(channels_, plan_, numbers_, shared_.topology, network_,
                                                config.topology.link, config.memory);
-  const SideLatencies latencies(config.topology.link, ShapeCache::nearest(config.memory));
+  const std::vector<MemoryConfig> own_memory = memory_of(config);
   if (observed.timeline.most > 0 || observed.ray != nullptr)
-    recorder_ = std::make_unique<Recorder>(config.testers, has_distributor(config), shared_, observed);
+    recorder_ =
+        std::make_unique<Recorder>(config.testers, most_contexts(config), has_distributor(config), shared_, observed);
   std::vector<SidePorts> sides;  // of shading
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
     const ResourceId id(r);
+    const SideLatencies latencies(config.topology.link, ShapeCache::nearest(own_memory[r]));
     sides_.push_back(std::make_unique<SideChannels>(channels_, kinds_.side, latencies, numbers_, r,
                                                     config.shading.idle_resources_shade, calls_shader(config, accel)));
     SidePorts side = sides_.back()->ports();
@@ -128,8 +151,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       const SidePorts& end = ends.emplace_back(ray_data_.back()->ports());
       others[c].push_back({end.fetch, end.fetched});
     }
-    const RayStore& store = *shared_.stores.front();
-    const std::uint32_t records = store.slots() + store.room().loaded + store.room().own;
+    std::uint32_t records = 0;
+    for (const auto& store : shared_.stores)
+      records = std::max(records, store->slots() + store->room().loaded + store->room().own);
     const RayData::Settings settings{config.memory, config.topology.link, records};
     shading_->keep_in_memory(std::make_unique<RayData>(settings, workload, ends));
   }
@@ -138,7 +162,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   DrawnAskers askers;
   if (parcels_) askers = parcels_->askers();
   memory_ =
-      std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory,
+      std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory, own_memory,
                                      config.engine.clock_mhz, cache_clients, others, parcels_ ? &askers : nullptr);
   if (parcels_) {
     parcels_->join(*memory_);
@@ -154,13 +178,17 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h) {
     Hub& hub = *network_.hubs()[h];
     hub.sample(observed.samples);
-    record_links(ResourceId(static_cast<std::uint32_t>(resources_.size()) + h),
-                 [&](std::size_t port, const LinkRecorder& to) { hub.record(port, to); });
+    const ClockRatio clock = network_.clocks().from_core(shared_.topology.mhz(hub_node(h)));
+    record_links(hub_node(h), [&](std::size_t port, LinkRecorder to) {
+      to.clock = clock;
+      hub.record(port, to);
+    });
   }
 }
 
 std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads) const {
   threads = std::clamp<std::size_t>(threads, 1, resources_.size());
+  const MachineClocks& clocks = network_.clocks();
   std::vector<std::vector<Agent*>> parts(threads);
   const auto share = [&](const auto& agents) {
     for (std::size_t i = 0; i < agents.size(); ++i) parts[i * threads / agents.size()].push_back(agents[i].get());
@@ -178,6 +206,10 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
     if (!parcels_->shared_links().empty()) share(parcels_->shared_links());
   }
   parts.back().push_back(shading_.get());
+  for (const std::vector<Agent*>& part : parts)
+    for (Agent* agent : part) agent->run_by(clocks.to_fastest(0));
+  for (std::uint32_t h = 0; h < network_.hubs().size(); ++h)
+    network_.hubs()[h]->run_by(clocks.to_fastest(shared_.topology.mhz(hub_node(h))));
   return parts;
 }
 
@@ -206,6 +238,23 @@ void SimulatedMachine::connect(WakeupTable& wakeups) const {
   }
   agents.insert(agents.end(), parts_.agents().begin(), parts_.agents().end());
   channels_.connect(wakeups, agents);
+}
+
+LinkUse SimulatedMachine::use_of_link(std::size_t number, std::size_t port_number, Cycle end) const {
+  const Topology& topology = shared_.topology;
+  const Topology::Wire& wire = topology.wires()[number];
+  const OutPort& port = out_of(wire.from)[port_number];
+  const MachineClocks& clocks = network_.clocks();
+  const ClockRatio from = clocks.from_core(topology.mhz(wire.from)), to = clocks.from_core(topology.mhz(wire.to));
+  LinkUse out{wire.from.value, wire.to.value, {}, network_.far(number).queue, {}, wire.mhz};
+  out.bytes = network_.near(number).packets.bytes().sent;
+  out.use = {port.busy(from.to_network(end)), port.stalled()};
+  if (wire.mhz == 0 && from.equal() && to.equal()) return out;
+  // Rounding must not make more of it than there is.
+  out.use.busy = std::min(end, from.before(out.use.busy));
+  out.use.stalled = std::min(end - out.use.busy, from.before(out.use.stalled));
+  out.queue.packet_cycles = to.before(out.queue.packet_cycles);
+  return out;
 }
 
 std::string SimulatedMachine::describe_waits() const {

@@ -77,7 +77,19 @@ class SimulatedMachine {
     return network_.hubs()[node.value - resources_.size()]->out();
   }
 
+  /// What a link did until `end`, in cycles of the resources. `number`: its wire in the topology, which leaves its
+  /// first node by `port`.
+  LinkUse use_of_link(std::size_t number, std::size_t port, Cycle end) const;
+  /// The cycles in which it has moved something so far.
+  Cycle busy_of_link(std::size_t number, std::size_t port) const {
+    const ResourceId from = shared_.topology.wires()[number].from;
+    return network_.clocks().from_core(shared_.topology.mhz(from)).before(out_of(from)[port].busy());
+  }
+
  private:
+  ResourceId hub_node(std::uint32_t hub) const {
+    return ResourceId(static_cast<std::uint32_t>(resources_.size()) + hub);
+  }
   /// Calls `record` with each port of a node and where its packets are to be noted, if they are.
   template <class Record>
   void record_links(ResourceId node, const Record& record) {

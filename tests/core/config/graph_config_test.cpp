@@ -4,6 +4,7 @@
 
 #include "core/config/graph/drawn_parts.h"
 #include "core/config/graph/graph.h"
+#include "core/config/own_sections.h"
 #include "core/config/write.h"
 #include "tests/core/config/bad_config.h"
 
@@ -248,7 +249,7 @@ TEST(GraphConfig, AnOverrideNamesNodes) {
       "b[*]'}]\n"
       "  overrides: [{nodes: 'b[*]', testers: {box: {units: 3}}}, {resource: 0, testers: {box: {units: 5}}}]\n");
   const auto units = [&](std::int64_t resource) {
-    return testers_of(config.testers, config.topology, resource).units[UnitKind::kBox].units;
+    return own_sections(config, resource).testers.units[UnitKind::kBox].units;
   };
   EXPECT_EQ(units(0), 5);
   EXPECT_EQ(units(1), config.testers.units[UnitKind::kBox].units);

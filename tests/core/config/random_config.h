@@ -119,6 +119,10 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
     if (value.kind == Kind::kRaysFrom) field("", value.rays_from, "", "");
     if (value.kind == Kind::kTraffic) fill(value.traffic);
   }
+  void others(std::map<std::string, std::int64_t>& value, config::IntRange range, const char*, const char*) {
+    value.clear();
+    if (pick(2) == 1) value = {{"far", range.min}, {"slow_link", range.max}};
+  }
   void vary(std::string_view, std::map<std::string, std::vector<std::string>>& value, const char*) {
     value.clear();
     if (pick(2) == 1) value = {{"packets.rays", {"1", "2..8*2"}}, {"verify,engine.kind", {"(none,native)"}}};

@@ -51,7 +51,18 @@ TEST_P(BadRing, IsRefusedByName) {
 }
 
 const std::string kSlots = "{ring: 'r[*]', stops: {rule: slots}";
-const std::string kRayed = "scene: {builtin: cornell}\n" + three(kSlots + "}");
+const std::string kNoClock = kTraffic + three("{line: 'r[*]', both: true, clock: nocc}");
+const std::string kUnusedClock = kTraffic + "clocks: {synchronizer_cycles: 3}\n" + three("{line: 'r[*]', both: true}");
+const std::string kClockOfRing = kTraffic +
+                                 "clocks: {slow: 500}\ntopology: {shape: graph, nodes: [{name: r, count: 3, clock: "
+                                 "slow}], links: [{ring: 'r[*]', stops: {rule: slots}}]}\n";
+const std::string kResourceClock =
+    "scene: {builtin: cornell}\nclocks: {slow: 500}\ntopology: {shape: graph, nodes: "
+    "[{name: r, count: 3, clock: slow}], links: [{ring: 'r[*]'}]}\n";
+const std::string kCarriedClock =
+    "scene: {builtin: cornell}\nclocks: {slow: 500}\ntopology: {shape: graph, nodes: "
+    "[{name: r, count: 3}, {name: c, kind: cache}], links: [{ring: 'r[*]', clock: slow}, "
+    "{from: 'r[*]', to: c, both: true, carries: [shapes]}]}\n";
 const std::string kNoRing = kTraffic + three("{line: 'r[*]', both: true, stops: {rule: slots}}");
 const std::string kDeep = kTraffic + three(kSlots + ", depth: 4}");
 const std::string kChannels = kTraffic + three(kSlots + ", virtual_channels: 2}");
@@ -77,9 +88,6 @@ const std::string kShapeClock = kTraffic + "topology: {flow: bubble}\nclocks: {n
 INSTANTIATE_TEST_SUITE_P(
     All, BadRing,
     testing::Values(
-        BadConfig{"Rays", kRayed.c_str(),
-                  "test.yaml:7:36: topology.links.0.stops.rule: a packet of rays waits at its stops until there are "
-                  "places, and nothing waits on such a ring; expected queues, or workload: traffic; found slots"},
         BadConfig{"NoRing", kNoRing.c_str(), "topology.links.0.stops.rule: only a ring has such stops"},
         BadConfig{"Depth", kDeep.c_str(),
                   "topology.links.0.depth: a ring with rule: slots holds a flit for each cycle"},
@@ -101,7 +109,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"OddExchange", kOdd.c_str(), "workload.traffic.pattern: exchange pairs the resources"},
         BadConfig{"AnswersWithQueues", kAnswer.c_str(),
                   "workload.traffic.reply_bytes: answers are modelled on a ring with stops"},
-        BadConfig{"ClockOfRays", kRayClock.c_str(), "clocks.noc: packets of rays know one clock; expected 1000"},
+        BadConfig{"ClockOfRays", kRayClock.c_str(), "clocks.noc: only a graph has a clock of its own; expected 1000"},
+        BadConfig{"UnknownClock", kNoClock.c_str(),
+                  "topology.links.0.clock: expected a clock, one of core, noc; found 'nocc'; did you mean 'noc'?"},
+        BadConfig{"UnusedClock", kUnusedClock.c_str(),
+                  "clocks.synchronizer_cycles: no node or link goes by this clock; expected clock: synchronizer_cycles "
+                  "at one of them; did you mean 'synchroniser_cycles'?"},
+        BadConfig{"ClockOfAStop", kClockOfRing.c_str(),
+                  "topology.nodes.0.clock: a stop goes by the clock of its ring; expected one of 1000 MHz"},
+        BadConfig{"ClockOfAResource", kResourceClock.c_str(),
+                  "topology.nodes.0.clock: a resource goes by the clock of the run"},
+        BadConfig{"ClockOfALinkForShapes", kCarriedClock.c_str(),
+                  "topology.links.1.carries: a drawing that carries more than packets has one clock yet"},
         BadConfig{"ClockOfAShape", kShapeClock.c_str(), "clocks.noc: only a graph has a clock of its own"}),
     [](const auto& bad) { return std::string(bad.param.name); });
 

@@ -3,16 +3,18 @@
 #include <string>
 #include <vector>
 
+#include "core/config/graph/ring.h"
 #include "core/config/load/load.h"
-#include "ringbus/cycle/rings/ring_engine.h"
-#include "ringbus/cycle/traffic/traffic_settings.h"
+#include "ringbus/cycle/traffic/ring_engine.h"
+#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::ringbus {
 
 /// Runs the traffic of a configuration on its ring with stops.
 inline TrafficResult run_ring(const Config& config) {
-  return run_ring_traffic(config.topology, config.workload.traffic,
-                          cycle::network_clock(config.clocks, config.engine.clock_mhz), config.image.seed, {});
+  const MachineClocks clocks(config.engine.clock_mhz, config.clocks.synchroniser_cycles);
+  const std::int64_t mhz = config.topology.links[*config::stop_ring_entry(config.topology)].mhz;
+  return run_ring_traffic(config.topology, config.workload.traffic, clocks.from_core(mhz), config.image.seed, {});
 }
 
 /// The machine of a text, and of a file of configs/rings, as users would change it.

@@ -1,4 +1,4 @@
-#include "ringbus/cycle/rings/ring_station.h"
+#include "ringbus/cycle/traffic/ring_station.h"
 
 #include <utility>
 

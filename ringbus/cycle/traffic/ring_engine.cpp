@@ -1,4 +1,4 @@
-#include "ringbus/cycle/rings/ring_engine.h"
+#include "ringbus/cycle/traffic/ring_engine.h"
 
 #include <algorithm>
 #include <chrono>
@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
-#include "ringbus/cycle/rings/grant_ring.h"
-#include "ringbus/cycle/rings/slot_ring.h"
+#include "ringbus/cycle/rings/ring_fabric.h"
+#include "ringbus/cycle/traffic/ring_station.h"
 #include "ringbus/topology/graph_facts.h"
 
 namespace carousel::ringbus {
@@ -40,10 +40,10 @@ class RingRun {
       if (nodes[place] < graph_.resources) places_[nodes[place]] = place;
     const RingLinks links(graph_.links.size(),
                           {clock_.to_network(plan_.window.begin), clock_.to_network(plan_.window.end)});
-    if (shape_.grants)
-      fabric_ = std::make_unique<GrantRing>(shape_, stations(), links);
-    else
-      fabric_ = std::make_unique<SlotRing>(shape_, stations(), links);
+    add_stations();
+    std::vector<RingEnd*> ends;
+    for (RingStation& station : stations_) ends.push_back(&station);
+    fabric_ = make_ring(shape_, std::move(ends), links);
   }
 
   TrafficResult run() {
@@ -74,30 +74,27 @@ class RingRun {
   }
 
  private:
-  std::vector<RingStation> stations() const {
+  void add_stations() {
     const RingStation::Settings settings{traffic_node_settings(traffic_, topology_.link, clock_),
                                          static_cast<std::uint32_t>(traffic_.reply_bytes),
                                          static_cast<Cycle>(traffic_.serve_cycles)};
-    std::vector<RingStation> out;
     for (std::uint32_t place = 0; place < shape_.stops; ++place) {
       const std::uint32_t node = shape_.drawn.nodes[place];
       std::optional<TrafficSource> source;
       if (node < graph_.resources)
         source.emplace(traffic_, seed_, graph_.resources, ends_, ResourceId(node), plan_.gap);
       const std::uint64_t packets = source ? plan_.packets[node] : 0;
-      out.emplace_back(place, shape_, places_, settings, std::move(source), packets, plan_.window);
+      stations_.emplace_back(place, shape_, places_, settings, std::move(source), packets, plan_.window);
     }
-    return out;
   }
 
   TrafficResult result() const {
     TrafficResult out;
     out.window_begin = plan_.window.begin;
     out.window_end = plan_.window.end;
-    out.network_window = clock_.to_network(out.window_end) - clock_.to_network(out.window_begin);
     out.packets = static_cast<std::uint64_t>(traffic_.packets);
     out.flits = shape_.flits(static_cast<std::uint64_t>(traffic_.packet_bytes));
-    for (const RingStation& station : fabric_->stations()) {
+    for (const RingStation& station : stations_) {
       const TrafficSink& sink = station.sink();
       const TrafficOffered offered = station.offered();
       out.cycles = std::max(out.cycles, sink.last() + 1);
@@ -109,10 +106,13 @@ class RingRun {
       out.travel += offered.travel;
       out.latency.add(sink.latency());
     }
-    out.network_cycles = clock_.to_network(out.cycles);
+    const Cycle cycles = clock_.to_network(out.cycles),
+                window = clock_.to_network(out.window_end) - clock_.to_network(out.window_begin);
     for (std::size_t i = 0; i < graph_.links.size(); ++i) {
       const RingLinks::Use& use = fabric_->links().all()[i];
-      out.links.push_back({graph_.links[i].from, graph_.links[i].to, {use.busy, 0}, {}});
+      out.links.push_back({graph_.links[i].from, graph_.links[i].to, {use.busy, 0}, {}, 0, graph_.links[i].mhz});
+      out.link_cycles.push_back(cycles);
+      out.link_windows.push_back(window);
       out.link_packets.push_back(use.packets);
       out.busy_in_window.push_back(use.in_window);
       out.flit_hops += use.busy;
@@ -131,6 +131,7 @@ class RingRun {
   TrafficEnds ends_;
   TrafficPlan plan_;
   std::vector<std::uint32_t> places_;  // stops of the resources
+  std::vector<RingStation> stations_;  // by stop
   std::unique_ptr<RingFabric> fabric_;
 };
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "ringbus/cycle/rings/ring_shape.h"
+#include "ringbus/cycle/rings/ring_end.h"
 #include "ringbus/cycle/traffic/traffic_agent.h"
 #include "ringbus/cycle/traffic/traffic_settings.h"
 #include "ringbus/cycle/traffic/traffic_sink.h"
@@ -16,7 +16,7 @@ namespace carousel::ringbus::cycle {
 /// What stands at a stop of a ring: a source and a sink, or nothing at a router. The queues of the source have no
 /// bound; answers go before packets of its own. A packet to its own stop passes inside, without the ring. What is
 /// created and delivered goes by the clock of the resources, all else by that of the network.
-class RingStation {
+class RingStation final : public RingEnd {
  public:
   /// The parts of workload.traffic that it follows.
   struct Settings {
@@ -30,12 +30,9 @@ class RingStation {
               const Settings& settings, std::optional<TrafficSource> source, std::uint64_t packets,
               TrafficWindow window);
 
-  /// When the first packet is ready; kNever without one.
-  Cycle due() const { return std::min(own_ready(), answers_.empty() ? kNever : answers_.front().ready); }
-  /// Takes a packet that is ready `now`; only when due.
-  RingPacket take(Cycle now);
-  /// A packet has come to this stop, whose last flit is here at `tail`. Tails do not decrease.
-  void arrive(const RingPacket& packet, Cycle tail);
+  Cycle due() const override { return std::min(own_ready(), answers_.empty() ? kNever : answers_.front().ready); }
+  RingPacket take(Cycle now) override;
+  void arrive(const RingPacket& packet, Cycle tail) override;
 
   const TrafficSink& sink() const { return sink_; }
   TrafficOffered offered() const { return offered_; }

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/config/fields/engine.h"
+#include "core/config/fields/topology.h"
+
+namespace carousel::config {
+
+/// The clocks that a configuration names.
+struct ClockTable {
+  const ClocksConfig& clocks;
+  std::int64_t core_mhz = 1000;  ///< engine.clock_mhz
+
+  /// The clock of that name in MHz; absent if there is none. `core` and `noc` are there in any case.
+  std::optional<std::int64_t> of(std::string_view name) const;
+  /// All of the names.
+  std::vector<std::string> names() const;
+};
+
+/// Fills in the clocks of a graph's nodes and links: those that they name, and otherwise noc at links and routers and,
+/// with synthetic traffic, at resources, which else go by core. A name that is no clock is left out; check_rings() says
+/// so.
+void name_clocks(TopologyConfig& topology, const ClockTable& clocks, bool traffic);
+
+/// A clock by which nodes or links go, by the name that the configuration has for it.
+struct UsedClock {
+  std::string name;
+  std::int64_t mhz = 0;
+};
+/// Those of the machine, core first; of several names with one frequency the first one.
+std::vector<UsedClock> used_clocks(const TopologyConfig& topology, std::int64_t core_mhz);
+
+}  // namespace carousel::config
