@@ -1,0 +1,163 @@
+// Machines of rays on rings whose stops have no queues, with clocks of links and routers, and with resources that
+// differ: the hits and counts of the reference tracer, and closed forms of time.
+#include <gtest/gtest.h>
+
+#include "tests/ringbus/support/timed_machine.h"
+
+namespace carousel::ringbus::ring_of_rays_test {
+namespace {
+
+constexpr const char* kSmall = "rays: {slots_per_resource: 32}\npackets: {rays: 8}\ncollections: {ready: 8}\n";
+
+std::string ring(const std::string& link, int stops = 5) {
+  return fmt::format("topology: {{shape: graph, nodes: [{{name: r, count: {}}}], links: [{{ring: 'r[*]', {}}}]}}\n",
+                     stops, link);
+}
+
+class RingOfRays : public testing::Test {
+ protected:
+  TestScene scene_{builtin_scene(BuiltinScene::kTerrain, 2000, 0), 60, 1};
+
+  /// One ray, which goes depth first from home to home of the nodes, so that there is one packet at a time.
+  std::uint64_t alone(const std::string& topology, const std::string& more = "") {
+    TestScene one(builtin_scene(BuiltinScene::kTerrain, 2000, 0), 1, 0);
+    return cycles_of(one,
+                     "packets: {rays: 1}\ncollections: {ready: 1, home: hash, when_full: spill, traversal: "
+                     "ordered}\nrays: {slots_per_resource: 1}\n" +
+                         more + topology);
+  }
+};
+
+// run_text() compares hits, counts and conservation with the reference tracer.
+TEST_F(RingOfRays, HasTheHitsOfTheReference) {
+  for (const char* stops :
+       {"{rule: slots}", "{rule: slots, rings: 2, fair_after_cycles: 50}", "{rule: slots, port_bytes_per_cycle: 8}",
+        "{rule: grants}", "{rule: grants, command_cycles: 2, transfers: 1, fair_after_cycles: 100}"})
+    for (const char* both : {"true", "false"})
+      for (const char* visit : {"owners", "all"}) {
+        if (std::string_view(visit) == "all" && std::string_view(both) == "true") continue;
+        SCOPED_TRACE(fmt::format("{} both: {} visit: {}", stops, both, visit));
+        const std::string text = kSmall + ring(fmt::format("both: {}, latency_cycles: 2, stops: {}", both, stops));
+        const std::vector<std::string> sets{fmt::format("topology.visit={}", visit)};
+        const Outcome one = run_text(scene_, text, sets), two = run_text(scene_, text, sets, 3);
+        EXPECT_EQ(one.result.cycle->cycles, two.result.cycle->cycles);
+        EXPECT_EQ(one.result.cycle->links, two.result.cycle->links);
+        std::uint64_t on = 0, off = 0;
+        for (const LinkResult& link : one.result.links) {
+          if (link.to.value == 5) on += link.statistics.packets;
+          if (link.from.value == 5) off += link.statistics.packets;
+        }
+        EXPECT_GT(on, 0u);
+        EXPECT_EQ(on, off);
+        ASSERT_TRUE(one.result.cycle->stops);
+        EXPECT_EQ(one.result.cycle->stops->starts, on);
+      }
+}
+
+// With nobody in the way a packet of F flits takes 1 + (F - 1 + h latency) + 1 cycles on a ring, and latency + F - 1
+// over a link; so with links of 10 cycles a machine takes as long as with queued links of 12 between all.
+TEST_F(RingOfRays, TakesTheClosedForm) {
+  const std::string all =
+      "topology: {shape: graph, link: {bytes_per_cycle: 4}, nodes: [{name: r, count: 3}], links: [{from: 'r[*]', "
+      "all_to: "
+      "'r[*]', latency_cycles: LAT}]}\n";
+  const auto links = [&](int latency) {
+    std::string text = all;
+    return text.replace(text.find("LAT"), 3, std::to_string(latency));
+  };
+  const auto slots = [&](const std::string& stops, int latency) {
+    return fmt::format(
+        "topology: {{shape: graph, link: {{bytes_per_cycle: 4}}, nodes: [{{name: r, count: 3}}], links: "
+        "[{{ring: 'r[*]', both: true, latency_cycles: {}, stops: {}}}]}}\n",
+        latency, stops);
+  };
+  const std::uint64_t queued = alone(links(12));
+  EXPECT_NE(alone(links(13)), queued) << "no packet travels";
+  EXPECT_EQ(alone(slots("{rule: slots}", 10)), queued);
+  EXPECT_EQ(alone(slots("{rule: grants, grant_cycles: 0}", 10)), queued);
+  EXPECT_EQ(alone(slots("{rule: grants, grant_cycles: 5}", 10)), alone(links(17)));
+  EXPECT_GT(alone(slots("{rule: slots, port_bytes_per_cycle: 2}", 10)), queued);
+  EXPECT_EQ(alone(slots("{rule: slots}", 10), "clocks: {noc: 1000, synchroniser_cycles: 9}\n"), queued);
+  EXPECT_LT(alone(slots("{rule: slots}", 10), "clocks: {noc: 2000, synchroniser_cycles: 0}\n"), queued);
+  EXPECT_GT(alone(slots("{rule: slots}", 10), "clocks: {noc: 500, synchroniser_cycles: 0}\n"), queued);
+}
+
+constexpr const char* kDomains =
+    "topology:\n  shape: graph\n"
+    "  nodes: [{name: a, count: 3}, {name: b, count: 3}, {name: x, kind: router, count: 2, latency_cycles: 2ROUTER}]\n"
+    "  links:\n    - {ring: 'a[*], x[0]', both: true}\n    - {ring: 'b[*], x[1]', both: true}\n"
+    "    - {from: 'x[0]', to: 'x[1]', both: true, latency_cycles: 9, bytes_per_cycle: 16LINK}\n";
+
+std::string domains(const std::string& clocks, const std::string& router, const std::string& link) {
+  std::string text = kDomains;
+  text.replace(text.find("ROUTER"), 6, router);
+  text.replace(text.find("LINK}"), 4, link);
+  return clocks + kSmall + text;
+}
+
+TEST_F(RingOfRays, ClocksOfOneFrequencyAreOne) {
+  const cycle::CycleResult one = *run_text(scene_, domains("", "", "")).result.cycle;
+  const cycle::CycleResult two =
+      *run_text(scene_, domains("clocks: {noc: 1000, a: 1000, synchroniser_cycles: 9}\n", ", clock: a", ", clock: a"))
+           .result.cycle;
+  EXPECT_EQ(one.cycles, two.cycles);
+  EXPECT_EQ(one.links, two.links);
+  EXPECT_EQ(one.epochs.digests, two.epochs.digests);
+}
+
+TEST_F(RingOfRays, SeveralClocksChangeTimeAndNothingElse) {
+  const std::uint64_t one = run_text(scene_, domains("", "", "")).result.cycle->cycles;
+  for (const char* clocks : {"clocks: {noc: 1333, slow: 400}\n", "clocks: {noc: 500, slow: 3000}\n",
+                             "clocks: {noc: 999, slow: 1001, synchroniser_cycles: 0}\n"}) {
+    const std::string text = domains(clocks, "", ", clock: slow");
+    const Outcome two = run_text(scene_, text), threads = run_text(scene_, text, {}, 3);
+    const cycle::CycleResult& c = *two.result.cycle;
+    EXPECT_NE(c.cycles, one);
+    EXPECT_EQ(threads.result.cycle->cycles, c.cycles);
+    EXPECT_EQ(threads.result.cycle->links, c.links);
+    for (const cycle::LinkUse& link : c.links) EXPECT_LE(link.use.busy + link.use.stalled, c.cycles);
+  }
+}
+
+// A link of 200 of its cycles takes 100 of the resources' at twice their frequency, and each synchroniser its cycles.
+TEST_F(RingOfRays, AWayTakesTheCyclesOfItsClock) {
+  const auto at = [&](int latency, const std::string& clocks) {
+    return alone(fmt::format("topology: {{shape: graph, nodes: [{{name: r, count: 2}}], links: [{{line: 'r[*]', both: "
+                             "true, latency_cycles: {}}}]}}\n",
+                             latency),
+                 clocks);
+  };
+  const std::uint64_t near = at(100, ""), far = at(200, ""), links = (far - near) / 100;
+  EXPECT_GE(links, 2u);
+  EXPECT_EQ(far - near, 100 * links);
+  EXPECT_EQ(at(200, "clocks: {noc: 2000, synchroniser_cycles: 0}\n"), near);
+  EXPECT_EQ(at(200, "clocks: {noc: 2000, synchroniser_cycles: 2}\n"), near + 3 * links);
+  const std::uint64_t slow = at(100, "clocks: {noc: 500, synchroniser_cycles: 1}\n");
+  EXPECT_GE(slow, far + 3 * links);
+  EXPECT_LE(slow, far + 4 * links);
+}
+
+// Stores, collections, contexts and caches that differ: nothing is lost, and each does something.
+TEST_F(RingOfRays, ResourcesThatDifferHaveTheSameHits) {
+  const std::string base =
+      "memory: {l1_kib: 4, l1_ways: 4, shape_buffer_kib: 4}\ncollections: {partial: after}\nrays: {slots_per_resource: "
+      "32}\npackets: {rays: 8}\n";
+  const auto machine = [&](const std::string& own) {
+    return base + "topology: {shape: graph, nodes: [{name: r, count: 3}, {name: q, count: 2" + own +
+           "}], links: [{ring: 'r[*], q[*]'}]}\n";
+  };
+  const std::uint64_t plain = cycles_of(scene_, machine(""));
+  for (const char* own : {"slots_per_resource: 5", "reads_per_cycle: 1", "ids_per_cycle: 1", "ready: 2",
+                          "sort_ids_per_cycle: 1", "partial_after_cycles: 3", "fetch_ahead: 0", "l1_kib: 1",
+                          "l1_latency_cycles: 90", "testers: {contexts: 1}", "testers: {contexts: 40, box: 1}"}) {
+    SCOPED_TRACE(own);
+    EXPECT_NE(cycles_of(scene_, machine(std::string(", ") + own)), plain);
+  }
+  for (const char* placement : {"first_taker", "addressed", "round_robin"})
+    run_text(scene_, machine(", slots_per_resource: 9"), {fmt::format("rays.placement={}", placement)});
+  run_text(scene_, machine(", slots_per_resource: 700"));
+  run_text(scene_, machine(", slots_per_resource: 9"), {"bundles.size=4"});
+}
+
+}  // namespace
+}  // namespace carousel::ringbus::ring_of_rays_test
