@@ -5,6 +5,7 @@
 #include "app/build_report/memory_report.h"
 #include "app/build_report/ring_sections.h"
 #include "core/config/own_sections.h"
+#include "report/csv/ray_csv_columns.h"
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
@@ -122,6 +123,12 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
     if (clocks) (*r.links)[i].clock = clock_of_link(config, c.links[i].mhz);
   }
   r.rays.residence = report::distribution_of(c.residence);
+  if (c.ray_times) {
+    report::RayTime& time = r.ray_time.emplace();
+    for (const ringbus::RayTimeRow& row : *c.ray_times)
+      time.by_kind.push_back(
+          {std::string(report::kRayKindNames[static_cast<std::size_t>(row.kind)]), row.bounce, row.rays, row.stages});
+  }
   Log2Histogram ages;
   for (const ringbus::cycle::TileResult& tile : c.tiles) ages += tile.collection_ages;
   if (r.collections && ages.count() > 0) r.collections->age = report::distribution_of(ages);

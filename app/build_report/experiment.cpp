@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -24,6 +25,7 @@
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
 #include "app/sampled/sampled_run.h"
+#include "app/trace/heat_map.h"
 #include "app/trace/memory_csv.h"
 #include "core/config/graph/ring.h"
 #include "core/system/executor.h"
@@ -60,7 +62,7 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
-                            ringbus::MemoryLog* memory) {
+                            ringbus::MemoryLog* memory, std::vector<ringbus::PixelCost>& heat) {
   log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
@@ -70,6 +72,10 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.samples = static_cast<std::size_t>(p.config().report.samples);
   if (trace != nullptr) options.timeline = trace->wanted();
   options.memory = memory;
+  options.ray_times = true;
+  if (no_heat_because(p).empty())
+    heat.resize(static_cast<std::size_t>(p.config().image.width * p.config().image.height));
+  options.heat = heat;
   options.transport = job.ranks();
   if (job.ranks() != nullptr) {
     options.samples = 0;  // their clocks differ
@@ -131,8 +137,22 @@ report::Report play_requests(const Prepared& p, const InterruptScope& interrupt)
 
 }  // namespace
 
+std::string no_heat_because(const Prepared& p) {
+  const Config& config = p.config();
+  if (config.engine.kind != EngineKind::kCycle) return "is of the native engine; expected engine.kind: cycle";
+  if (config.workload.kind != WorkloadConfig::Kind::kRays) return "makes no picture; expected workload: rays";
+  if (config.bundles.size > 0) return "has bundles, whose rays have no packets of their own; expected bundles.size: 0";
+  if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
+    return "begins rays anew when a resource stops; expected another faults.resource.kind";
+  if (config.rays.placement == Placement::kFirstTaker || config.rays.placement == Placement::kAddressed)
+    return fmt::format("has rays.placement: {}, by which resources give slots away; expected balanced or round_robin",
+                       enum_name(config.rays.placement));
+  return "";
+}
+
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
-                        const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory) {
+                        const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory,
+                        std::vector<ringbus::PixelCost>* heat) {
   std::optional<accel::HitOracle> oracle;
   std::optional<accel::VerifyingWorkload> verifying;
   if (p.config().verify == Verify::kReference) {
@@ -150,8 +170,10 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     places.emplace(census, job);
     if (memory == nullptr) memory = &requests;
   }
+  std::vector<ringbus::PixelCost> own_heat;
+  std::vector<ringbus::PixelCost>& pixels = heat != nullptr ? *heat : own_heat;
   const ringbus::RunResult result =
-      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory);
+      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, pixels);
   if (job.ranks() != nullptr) {
     share_signal(*job.ranks());
     job.join();
@@ -165,6 +187,8 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);
+  if (result.complete && !pixels.empty())
+    report.heat = heat_section(pixels, static_cast<std::uint32_t>(p.config().image.width));
   report.host.draw_seconds = job.draw_seconds();
   if (places && result.complete) {
     report.sampled = estimates(p, job, *places, result, *memory);

@@ -21,6 +21,11 @@ void add_run(CLI::App& program, RunArguments& r) {
                   "Write the requests to the simulated memory as CSV, which workload: {memory_trace: FILE} reads "
                   "(default: not written)")
       ->type_name("FILE");
+  run->add_option("--heat", r.heat,
+                  "Draw what the rays of each pixel took, their cycles, tests, hops and waiting, on this scale: "
+                  "heat_cycles.png and so on, and heat.csv (default: not drawn)")
+      ->check(CLI::IsMember({"linear", "log"}))
+      ->type_name("SCALE");
   run->add_flag(
       "--audit", r.audit,
       "With sampling.fraction: simulate the whole frame, too, and say how far off the estimates are (default: "

@@ -21,10 +21,12 @@ namespace carousel::app {
 using Json = nlohmann::ordered_json;
 
 std::string run_page_of(const Json& report, const std::filesystem::path& folder) {
-  report::html::Picture picture;
+  report::html::Picture picture, heat;
   if (report.contains("digest") && report["digest"].contains("image"))
     if (const auto found = shading::page_picture(folder / "image.png")) picture = {found->mime_type, found->bytes};
-  return report::html::run_page(report, picture);
+  if (report.contains("heat"))
+    if (const auto found = shading::page_picture(folder / "heat_cycles.png")) heat = {found->mime_type, found->bytes};
+  return report::html::run_page(report, picture, heat);
 }
 
 namespace {

@@ -3,7 +3,9 @@
 #include <exception>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -23,6 +25,7 @@
 #include "app/run/render_job.h"
 #include "app/sampled/sampled_run.h"
 #include "app/sweep/plan/content.h"
+#include "app/trace/heat_map.h"
 #include "app/trace/memory_csv.h"
 #include "app/trace/trace_file.h"
 #include "core/config/write.h"
@@ -83,6 +86,7 @@ void require_no_hits(const RunArguments& arguments, std::string_view workload) {
   refuse(!arguments.dump_rays.empty(), "--dump-rays");
   refuse(!arguments.dump_trees.empty(), "--dump-trees");
   refuse(!arguments.dump_memory.empty(), "--dump-memory");
+  refuse(!arguments.heat.empty(), "--heat");
   refuse(!arguments.trace.file.empty(), "--trace");
 }
 
@@ -117,6 +121,13 @@ std::string trace_text(const TraceArguments& trace) {
   return fmt::format("window '{}', every {}, at most {} events", trace.window, trace.every, trace.events);
 }
 
+/// The maps show what only some runs know.
+void require_heat(const RunArguments& arguments, const Prepared& p) {
+  if (arguments.heat.empty()) return;
+  if (const std::string why = no_heat_because(p); !why.empty())
+    throw ConfigError("--heat", "this run " + why + ", or a run without this option");
+}
+
 /// Only a simulated machine has a memory.
 void require_memory(const RunArguments& arguments, const Config& config) {
   if (!arguments.dump_memory.empty() && config.engine.kind != EngineKind::kCycle)
@@ -148,9 +159,12 @@ std::string scene_digest(const Prepared& p) {
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
-                 const RenderJob& job, const report::Report& report, HitRecorder* recorder, ExtraFile* rays) {
+                 const RenderJob& job, const report::Report& report, HitRecorder* recorder, ExtraFile* rays,
+                 std::span<const ringbus::PixelCost> heat) {
   write_file(folder / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
   job.write_images(folder);
+  if (!arguments.heat.empty() && report.heat)
+    write_heat(folder, heat, static_cast<std::uint32_t>(p.config().image.width), arguments.heat == "log");
   if (recorder) {
     const std::vector<report::HitRow> rows = recorder->take();
     if (rays) rays->write([&](AtomicFile& file) { report::write_rays_csv(file, rows, !report.incomplete); });
@@ -196,6 +210,7 @@ int run_command(const RunArguments& arguments) {
   if (outputs)
     if (ExtraFile* const file = outputs->trees())
       file->write([&](AtomicFile& to) { accel::write_trees(to, p.accel, p.scene); });
+  require_heat(arguments, p);
 
   RenderJob job(p);
   if (ranks) {
@@ -208,9 +223,10 @@ int run_command(const RunArguments& arguments) {
   if (!arguments.trace.file.empty())
     trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative, outputs ? outputs->trace() : nullptr);
   ringbus::MemoryLog memory;
+  std::vector<ringbus::PixelCost> heat;
   const bool quiet = arguments.quiet || (ranks && ranks->rank() != 0);
   report::Report report = run_rays(arguments, p, job, interrupt, quiet, trace ? &*trace : nullptr,
-                                   arguments.dump_memory.empty() ? nullptr : &memory);
+                                   arguments.dump_memory.empty() ? nullptr : &memory, &heat);
   if (ranks && ranks->rank() != 0) {
     ranks->leave();
     return report.incomplete ? interrupt.status() : kDone;
@@ -226,7 +242,7 @@ int run_command(const RunArguments& arguments) {
     file->write([&](AtomicFile& to) { write_memory_csv(to, memory, !report.incomplete); });
   const int status = finish(
       arguments, report, report::report_table(report), *outputs, interrupt, [&](const std::filesystem::path& folder) {
-        write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr, outputs->rays());
+        write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr, outputs->rays(), heat);
       });
   if (ranks) ranks->leave();
   return status;

@@ -11,6 +11,7 @@ struct RunArguments : ConfigArguments {
   std::string out;          ///< folder; empty: out/<name of the configuration>
   std::string dump_rays;    ///< ray CSV to write; empty: none
   std::string dump_trees;   ///< file of trees to write; empty: none
+  std::string heat;         ///< scale of the maps of the pixels' cost, linear or log; empty: none are written
   std::string dump_memory;  ///< CSV of memory requests to write; empty: none
   TraceArguments trace;
   bool hits = false, json = false, quiet = false, force = false, no_html = false;

@@ -28,8 +28,9 @@ namespace {
 constexpr const char* kConfigFile = "config.resolved.yaml";  // all commands write it
 
 /// The files of a command, by Results; the first is its result, which appears last. A run also has pictures.
-constexpr std::array<std::array<std::string_view, 3>, 3> kFiles{{
-    {"report.json", "report.html", "hits.csv"},
+constexpr std::array<std::array<std::string_view, 8>, 3> kFiles{{
+    {"report.json", "report.html", "hits.csv", "heat.csv", "heat_cycles.png", "heat_tests.png", "heat_hops.png",
+     "heat_waiting.png"},
     {"accuracy.json", "accuracy.html"},
     {"stress.json", "stress.html"},
 }};

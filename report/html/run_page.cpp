@@ -9,13 +9,15 @@
 
 namespace carousel::report::html {
 
-std::string run_page(const Json& report, const Picture& picture) {
+std::string run_page(const Json& report, const Picture& picture, const Picture& heat) {
   const Json schema = report_schema();
   const std::vector<Section> sections{
       {"verdict", "The run at a glance", verdict_section(report, picture)},
       {"sampled", "Estimates for the whole frame", sampled_section(report, schema)},
       {"machine", "The machine", machine_section(report, schema)},
       {"cycles", "Use of the cycles", cycles_section(report)},
+      {"ray-time", "Where a ray's cycles go", ray_time_section(report)},
+      {"heat", "Slow pixels", heat_section(report, schema, heat)},
       {"waits", "Waiting, ranked", waits_section(report)},
       {"gains", "Gain of a better part", gains_section(report, schema)},
       {"bytes", "Bytes by wire", bytes_section(report, schema)},

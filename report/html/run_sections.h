@@ -15,6 +15,9 @@ Html verdict_section(const nlohmann::ordered_json& report, const Picture& pictur
 Html sampled_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html machine_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html cycles_section(const nlohmann::ordered_json& report);
+Html ray_time_section(const nlohmann::ordered_json& report);
+/// `map`: of the pixels' cycles; there may be none.
+Html heat_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema, const Picture& map);
 Html waits_section(const nlohmann::ordered_json& report);
 Html gains_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html bytes_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);

@@ -19,6 +19,8 @@
 #include "report/sections/program.h"
 #include "report/sections/ranks.h"
 #include "report/sections/rays.h"
+#include "report/sections/rays/heat.h"
+#include "report/sections/rays/ray_time.h"
 #include "report/sections/resource.h"
 #include "report/sections/sampled.h"
 #include "report/sections/scene_summary.h"
@@ -49,6 +51,8 @@ struct Report {
   Engine engine;
   std::optional<std::vector<ClockUse>> clocks;
   Rays rays;
+  std::optional<RayTime> ray_time;
+  std::optional<Heat> heat;
   std::optional<RasterCounts> raster;
   std::optional<Sampled> sampled;
   std::optional<Throughput> throughput;
@@ -99,6 +103,11 @@ void describe(V& v, const Report& r) {
   v.section("engine", r.engine, "engine that simulated the machine");
   v.section("clocks", r.clocks, "each clock, where parts of the machine go by several");
   v.section("rays", r.rays, "rays; emitted = completed + lost");
+  v.section("ray_time", r.ray_time,
+            "where the cycles of all rays go (cycle); absent of an incomplete run, with bundles, and with "
+            "faults.resource.kind: stop");
+  v.section("heat", r.heat,
+            "cost of the picture's pixels, likewise; absent also with rays.placement: first_taker or addressed");
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");
   v.section(
       "sampled", r.sampled,

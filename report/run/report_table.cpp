@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "report/rays/ray_time_table.h"
 #include "report/run/part_table.h"
 #include "report/run/sampled_table.h"
 #include "report/run/verdict_table.h"
@@ -360,6 +361,8 @@ std::string report_table(const Report& report) {
                scaled(report.host.rays_per_second), seconds_text(report.host.wall_seconds),
                seconds_text(report.host.build_seconds), bytes_text(report.host.peak_memory_bytes));
   if (report.engine.cycles && report.throughput) cycle_lines(table, report);
+  if (report.ray_time) table.text(ray_time_table(*report.ray_time));
+  if (report.heat) table.text(heat_table(*report.heat));
   if (report.bottleneck) table.text(verdict_table(*report.bottleneck));
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,

@@ -4,6 +4,7 @@
 
 #include "core/config/parts.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/statistics/ray_stage_counts.h"
 #include "core/statistics/stall_counts.h"
 #include "core/types/unit_kind.h"
 #include "report/sections/costs.h"
@@ -131,6 +132,13 @@ void cycle_words(Words& w) {
             "rays whose tests began while an older packet was in test")
       .item("waits N", "resources[].units.distributor.queue_full",
             "part of the cycles in which the distributor waited for a place in a tester's queue");
+  w.line("ray time").item("N cycles a ray", "ray_time.latency");
+  for (const Counter<RayStageCounts>& row : kCounters<RayStageCounts>)
+    w.item(std::string(row.name) + " N", std::string("ray_time.") + row.name,
+           std::string("part of the rays' cycles: ") + row.meaning);
+  w.line("slow pixels")
+      .item("*: N cycles of N rays", "heat.slowest[].cycles", "a pixel whose rays took most cycles, and these rays")
+      .item("N a pixel", "heat.cycles_mean");
   w.line("bottleneck")
       .item("*", "bottleneck.verdict", "the class of parts that limits the machine, and the gain if it were relaxed")
       .item(

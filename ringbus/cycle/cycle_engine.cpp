@@ -25,7 +25,7 @@ class CycleRun {
         options_(options),
         machine_(config, accel, scene_size, workload, options.statistics,
                  {options.trace, most_samples(options.samples, series_counters(config.topology)), options.timeline,
-                  options.ray, options.memory}) {
+                  options.ray, options.memory, options.ray_times, options.heat}) {
     machine_.warm(options.warm);
   }
 
@@ -90,6 +90,15 @@ class CycleRun {
     if (!fits) throw SimulationError("the cycles of a resource's parts do not add up to the run");
   }
 
+  /// The stages that a ray spends in its slot, against the times of the slots.
+  static void check_ray_times(const std::vector<RayTimeRow>& rows, std::uint64_t residence) {
+    std::uint64_t sum = 0;
+    for (const RayTimeRow& row : rows)
+      for (auto stage = RayStage::kLoad; stage <= RayStage::kReturn; stage = RayStage(std::uint8_t(stage) + 1))
+        sum += row.stages[stage];
+    if (sum != residence) throw SimulationError("the stages of the rays' time do not add up to their time in slots");
+  }
+
   std::optional<IdsAtOnce> ids_at_once() const {
     if (!machine_.shared().topology.has_packets()) return std::nullopt;
     IdsAtOnce out;
@@ -115,6 +124,10 @@ class CycleRun {
     c.cycles = end;
     c.shading = machine_.shading().counts();
     c.residence = machine_.shading().residence();
+    if (const RayTimes* times = machine_.ray_times(); times != nullptr && complete) {
+      c.ray_times = times->rows();
+      if (kChecked) check_ray_times(*c.ray_times, c.residence.sum());
+    }
     const ResourceLoss& loss = machine_.shading().loss();
     out.rays_restarted = loss.rays_restarted();
     out.paths_restarted = loss.paths_restarted();

@@ -19,11 +19,13 @@ enum class PacketKind : std::uint8_t {
 };
 
 /// A ray of a packet: its ID and the strip's answer. Bit l of `mask` is set when it hit lane l. `again`: it has not
-/// been tested and comes to the same strip once more.
+/// been tested and comes to the same strip once more. `joined`: the low half of the cycle in which it joined the
+/// collection that the packet was made of; 0 in engines without a clock.
 struct PacketMember {
   RayId ray;
   std::uint8_t mask = 0;
   bool again = false;
+  std::uint32_t joined = 0;
 };
 
 /// The node that an ordered ray visits next. The ray's owner writes it into the packet.

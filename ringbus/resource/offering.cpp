@@ -40,7 +40,7 @@ void Offering::take(CollectionId chosen) {
   block_.shape = collections_.shape(chosen);
   block_.depth = collections_.depth(chosen);
   block_.entry = collections_.entry(chosen);
-  collections_.take(chosen, block_.rays);
+  collections_.take(chosen, block_.rays, &block_.joined);
   block_.next_packet = 0;
   // Memberships that move to another home are not tested on their way: one packet carries them.
   const bool tested = homes_.of(block_.key) == rays_.owner();
@@ -64,7 +64,7 @@ void Offering::fill(Packet& packet) {
   packet.answered = packet.named = 0;
   packet.takes_reserve = !storage_.fits(packet.reserved_blocks, 0);
   packet.members.resize(rays.size());
-  for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0};
+  for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0, false, block_.joined[i]};
   traversal_.prepare(packet);
   mark_owners(packet);
   storage_.issue(packet.reserved_blocks);

@@ -56,6 +56,7 @@ class Offering {
   /// The block that is going out.
   struct Block {
     std::vector<RayId> rays;
+    std::vector<std::uint32_t> joined;  // one a ray
     accel::NodeKey key;
     std::uint8_t shape = 0;
     std::uint16_t depth = 0;

@@ -21,6 +21,7 @@
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
 #include "ringbus/results/stop_ring_use.h"
+#include "ringbus/results/ray_times.h"
 #include "ringbus/results/trace.h"
 #include "ringbus/time/clock.h"
 
@@ -129,9 +130,10 @@ struct CycleResult {
   std::optional<DramUse> dram;            ///< use of DRAM with banks
   ShadingCounts shading;
   std::uint64_t hops = 0;
-  Log2Histogram residence;        ///< times of rays from their slot until shading has their hit
-  std::optional<IdsAtOnce> ids;   ///< where there are collections
-  std::optional<StopTimes> stop;  ///< if one was excluded before the last ray was shaded
+  Log2Histogram residence;                           ///< times of rays from their slot until shading has their hit
+  std::optional<std::vector<RayTimeRow>> ray_times;  ///< with RunOptions::ray_times, of a complete run
+  std::optional<IdsAtOnce> ids;                      ///< where there are collections
+  std::optional<StopTimes> stop;                     ///< if one was excluded before the last ray was shaded
   EpochDigests epochs;
   std::vector<Step> steps;  ///< steps that RunOptions::trace asks for
   friend bool operator==(const CycleResult&, const CycleResult&) = default;

@@ -7,6 +7,8 @@
 
 namespace carousel::ringbus {
 
+class RayTimes;
+
 /// The places where one part of a machine notes its slices of time and the life of the followed ray; null: nowhere.
 struct Recording {
   SliceLog* slices = nullptr;
@@ -14,6 +16,7 @@ struct Recording {
   std::uint32_t track = 0;     ///< its first
   RayLog* ray = nullptr;
   std::uint32_t contexts = 0;  ///< tracks of test contexts, as many for each resource
+  RayTimes* times = nullptr;  ///< the ledger of all rays' time
 
   /// A packet is issued. Only with `slices`.
   void issue(std::uint32_t packet, std::span<const PacketMember> members) const {

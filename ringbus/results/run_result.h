@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "ringbus/results/memory_request.h"
 #include "ringbus/results/occupancy_series.h"
 #include "ringbus/results/ray_log.h"
+#include "ringbus/results/ray_times.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/results/time_series.h"
 #include "ringbus/transport/transport.h"
@@ -49,6 +51,8 @@ struct RunOptions {
   MemoryLog* memory = nullptr;                   ///< cycle: requests to the memory are appended
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start
+  bool ray_times = false;                        ///< cycle: where all rays' cycles go
+  std::span<PixelCost> heat{};                   ///< cycle, with ray_times: one a pixel, to be added to; may be empty
   /// Called a few times a second from the calling thread with the rays completed so far; may be empty.
   std::function<void(std::uint64_t completed)> progress;
 };

@@ -68,7 +68,11 @@ bool needs_module(PictureFile format) {
 
 void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::span<const float> rgb,
                float exposure) {
-  const std::vector<std::uint8_t> pixels = display_pixels(rgb, exposure);
+  write_png_bytes(path, width, height, display_pixels(rgb, exposure));
+}
+
+void write_png_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                     std::span<const std::uint8_t> rgb) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = width;
@@ -76,8 +80,7 @@ void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint
   image.format = PNG_FORMAT_RGB;  // eight bits a channel, sRGB
   png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
   std::string bytes(size, '\0');
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, pixels.data(), 0, nullptr) == 0)
-    fail(path, image.message);
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, rgb.data(), 0, nullptr) == 0) fail(path, image.message);
   write_file(path, {bytes.data(), size});
 }
 

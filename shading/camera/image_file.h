@@ -16,6 +16,10 @@ namespace carousel::shading {
 void write_png(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height, std::span<const float> rgb,
                float exposure = 0);
 
+/// Writes a picture whose bytes, three a pixel, are sRGB already.
+void write_png_bytes(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
+                     std::span<const std::uint8_t> rgb);
+
 /// Writes a picture for computation: the linear values as 32-bit float, losslessly compressed.
 void write_exr(const std::filesystem::path& path, std::uint32_t width, std::uint32_t height,
                std::span<const float> rgb);

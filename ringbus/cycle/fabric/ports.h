@@ -211,7 +211,7 @@ class OutPortOf {
     free_at_ = flight.link_free;
     wire_->packets.send(flight.arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
-      if (recorder_.slices != nullptr) [[unlikely]]
+      if (recorder_.wanted()) [[unlikely]]
         recorder_.note(token, now, free_at_, near_ ? near_->to_link.to_core(flight.arrival) : flight.arrival);
     }
     --credits_;

@@ -5,10 +5,11 @@
 
 namespace carousel::ringbus::cycle {
 
-TravellingRays::TravellingRays(Machine& machine, ResourceId here, const LinkConfig& link)
+TravellingRays::TravellingRays(Machine& machine, ResourceId here, const LinkConfig& link, RayTimes* times)
     : machine_(machine),
       here_(here),
       on_(machine.control.rays_travel()),
+      times_(times != nullptr ? &times->of(here) : nullptr),
       rounds_(machine, here),
       record_cycles_(ceil_div(sizeof(RayRecord), static_cast<std::uint64_t>(link.bytes_per_cycle))),
       placed_at_(on_ ? machine.stores[here.value]->slots() : 0) {}
@@ -36,7 +37,10 @@ Cycle TravellingRays::take_slots(Packet& packet, Cycle now) {
 }
 
 void TravellingRays::note_taken(RayId id, Cycle now) {
-  placed_at_[machine_.stores[here_.value]->slot(id)] = now;
+  RayStore& store = *machine_.stores[here_.value];
+  const std::uint32_t slot = store.slot(id);
+  placed_at_[slot] = now;
+  if (times_ != nullptr) times_->found(slot, store.record(slot).tag, now);
 }
 
 void TravellingRays::retire_at_owner(Packet& packet, Cycle now) {

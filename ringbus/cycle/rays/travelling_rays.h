@@ -10,6 +10,7 @@
 #include "ringbus/protocol/machine.h"
 #include "ringbus/protocol/ray_rounds.h"
 #include "ringbus/results/counter_samples.h"
+#include "ringbus/results/ray_times.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -22,8 +23,8 @@ namespace carousel::ringbus::cycle {
 /// is free again in the cycle in which its ray is handed over.
 class TravellingRays {
  public:
-  /// Keeps a reference to the machine.
-  TravellingRays(Machine& machine, ResourceId here, const LinkConfig& link);
+  /// Keeps a reference to the machine. `times`: the ledger of all rays' time; may be null.
+  TravellingRays(Machine& machine, ResourceId here, const LinkConfig& link, RayTimes* times);
 
   bool on() const { return on_; }
   /// Ray control has sent a group, which waits for a packet.
@@ -60,6 +61,7 @@ class TravellingRays {
   Machine& machine_;
   ResourceId here_;
   bool on_;
+  ResourceTimes* times_;
   RayRounds rounds_;
   Cycle record_cycles_, load_free_ = 0;
   std::deque<RayGroup> waiting_;

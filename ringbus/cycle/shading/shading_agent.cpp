@@ -72,7 +72,7 @@ void ShadingAgent::take_completed(Cycle now) {
     if (done.note != CompletedRays::Note::kDone) return on_note(resource, done.note, now);
     placement_.free(resource, done, now);
     loss_.came_back(done.rays);
-    recorder_.taken(done.rays, now);
+    recorder_.taken(ResourceId(resource), done.rays, done.slots, now);
     if (data_) [[unlikely]]
       data_->completed(ResourceId(resource), done.slots, now);
     for (const RayResult& ray : done.rays)

@@ -74,7 +74,7 @@ class ShadingAgent final : public Agent {
   /// Its counters over time (shading_samples.h), after close().
   const CounterSamples& samples() const { return samples_.counters(); }
   void close(Cycle end) { samples_.close(end, levels()); }
-  /// From now on the life of a ray is noted.
+  /// From now on the life of a ray is noted, or the time of all rays accounted for.
   void record(const Recording& recording) { recorder_.record(recording); }
   const ResourceLoss& loss() const { return loss_; }
 

@@ -25,6 +25,12 @@ void ShadingRecorder::note_shaded(const HitBatch& rays, Cycle now) {
           {.kind = RayFact::Kind::kShaded, .at = shade_began_, .end = now, .hit = ray.hit, .tag = ray.tag});
 }
 
+void ShadingRecorder::account_for(RayId id, Cycle now) {
+  const RayIdLayout& layout = machine_.stores.front()->layout();
+  const ResourceId owner = layout.owner(id);
+  times_->placed(owner, layout.slot(id), machine_.stores[owner.value]->record(layout.slot(id)).tag, now);
+}
+
 void ShadingRecorder::note_placed(RayId id, std::uint32_t home, Cycle now) {
   const RayIdLayout& layout = machine_.stores.front()->layout();
   RayStore& store = *machine_.stores[layout.owner(id).value];

@@ -134,6 +134,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
   UserState& state = users_[user];
   state.state = State::kHolds;
   state.missing = 0;
+  state.complete_at = now;
   state.entries = found;
   for (const std::uint32_t entry : found)
     if (entry != kNone) hold(entry);
@@ -215,6 +216,7 @@ void ShapeBuffer::take_answers(Cycle now) {
     for (std::uint32_t wait = entry.first_wait; wait != kNone; wait = users_[wait / 2].next_wait[wait % 2]) {
       UserState& state = users_[wait / 2];
       if (--state.missing > 0) continue;
+      state.complete_at = now;
       if (state.ahead)
         queue_changed_ = true;
       else

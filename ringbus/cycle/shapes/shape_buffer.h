@@ -60,6 +60,8 @@ class ShapeBuffer {
   void take_ahead(User user, const ShapeNeed& need, Cycle now, std::uint64_t others = 0);
   /// Tells whether all that `user` took is there.
   bool is_here(User user) const { return users_[user].state == State::kHolds && users_[user].missing == 0; }
+  /// The cycle since which it has been. Only if it is.
+  Cycle here_since(User user) const { return users_[user].complete_at; }
   /// Tells whether a span is there, for whoever would take it.
   bool has(const ShapeSpan& span) const {
     const std::uint32_t entry = find(span);
@@ -105,6 +107,7 @@ class ShapeBuffer {
     State state = State::kNothing;
     bool ahead = false;        // in the issue queue
     std::uint8_t missing = 0;  // spans that have not come
+    Cycle complete_at = 0;     // the last span came, or all were there
     std::array<std::uint32_t, 2> entries{kNone, kNone};
     std::array<std::uint32_t, 2> next_wait{kNone, kNone};  // behind it at the same entry: 2 * user + which of its spans
     ShapeNeed need;                                        // while it waits for room

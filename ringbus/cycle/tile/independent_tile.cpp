@@ -27,7 +27,8 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       threads_(store_.slots(), Thread{{}, RayWalk(transforms_, settings.resource.collections.order), {}, 0}),
       ledger_(tester_),
       samples_(settings.observed.samples, kFirstPortCounter),
-      recording_(settings.recording) {
+      recording_(settings.recording),
+      times_(recording_.times != nullptr ? &recording_.times->of(id) : nullptr) {
   if (recording_.slices != nullptr && recording_.ray == nullptr)
     tester_.record(*recording_.slices, recording_.track + 1 + recording_.contexts);
 }
@@ -48,7 +49,10 @@ void IndependentTile::step(Cycle now) {
   now_ = now;
   take_new_rays(now);
   while (ports_.answers != nullptr && ports_.answers->next() <= now)
-    for (const std::uint32_t slot : ports_.answers->take().slots) keep_running(slot, now);
+    for (const std::uint32_t slot : ports_.answers->take().slots) {
+      spent(slot, RayStage::kOpacity, now);
+      keep_running(slot, now);
+    }
   shapes_.take_answers(now);
   serve(now);
   do {
@@ -91,6 +95,7 @@ void IndependentTile::take_new_rays(Cycle now) {
       threads_[slot].walk.start(accel_.root_key());
       if (follows(slot)) [[unlikely]]
         note(RayFact::Kind::kAdmitted, now, now);
+      spent(slot, RayStage::kLoad, now);
       keep_running(slot, now);
     }
   }
@@ -142,6 +147,8 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   stack_.ray_peak_bytes = std::max(stack_.ray_peak_bytes, held);
   const Cycle done = tester_.ray(tester_.read(now, 1), counts);
   tests_.push({done, next_turn_++, slot});
+  spent(slot, RayStage::kShapes, now);
+  spent(slot, RayStage::kTest, done);
   if (follows(slot)) [[unlikely]] {
     note(RayFact::Kind::kFetched, waits_since_, now, thread.strip);
     note(RayFact::Kind::kWalked, now, done, thread.strip);
@@ -171,6 +178,8 @@ void IndependentTile::hand_over(Cycle now) {
   if (completed_.empty()) return;
   if (recording_.ray != nullptr) [[unlikely]]
     note_done(now);
+  for (std::size_t i = 0; times_ != nullptr && i < completed_.size(); ++i)
+    times_->done(freed_slots_[i], completed_[i].tag, now);
   trace_.note(now, StepKind::kComplete, 0, completed_.size());
   record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(completed_.size())});
   completed_port_.send(completed_, freed_slots_, {}, now);

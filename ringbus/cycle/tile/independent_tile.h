@@ -76,6 +76,10 @@ class IndependentTile final : public ResourceAgent {
   bool follows(std::uint32_t slot) const {
     return recording_.ray != nullptr && recording_.ray->ray->is(threads_[slot].ray);
   }
+  /// Its ray has been in `stage` since what was accounted for last.
+  void spent(std::uint32_t slot, RayStage stage, Cycle until) {
+    if (times_ != nullptr) times_->spent(slot, store_.record(slot).tag, stage, until);
+  }
   void note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key = {});
   void note_done(Cycle now);
   void hand_over(Cycle now);
@@ -113,6 +117,7 @@ class IndependentTile final : public ResourceAgent {
   TileLedger ledger_;
   CounterSamples samples_;
   Recording recording_;
+  ResourceTimes* times_;   // null: rays' time is not accounted for
   Cycle waits_since_ = 0;  // the followed ray
   std::vector<OutPort> no_links_;
 };

@@ -37,7 +37,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       egress_(machine, id, logic_, needs_, ports_.out),
       room_(id, static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets)),
             resource_, shapes_),
-      travelling_(machine, id, settings.link),
+      travelling_(machine, id, settings.link, settings.recording.times),
       completions_(id, machine.stores[id.value]->slots(),
                    settings.testers.contexts > 1 && settings.resource.bundles.size == 0, settings.link, ports_,
                    travelling_, sink_, recorder_),

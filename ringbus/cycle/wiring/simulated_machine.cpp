@@ -74,11 +74,23 @@ std::int64_t most_contexts(const Config& config) {
   return most_of_resources(config, [](const OwnSections& one) { return one.testers.contexts; });
 }
 
+std::uint32_t most_slots(const Machine& machine) {
+  std::uint32_t most = 0;
+  for (const auto& store : machine.stores) most = std::max(most, store->slots());
+  return most;
+}
+
 /// As the resources ask it for shapes, by resource.
 std::vector<MemoryConfig> memory_of(const Config& config) {
   std::vector<MemoryConfig> out;
   for (std::int64_t r = 0; r < config.topology.resources; ++r) out.push_back(own_sections(config, r).memory);
   return out;
+}
+
+/// Rays in bundles have no packets of their own, and rays that begin anew have two lives.
+bool accounts_for_rays(const Config& config, const Observation& observed) {
+  return observed.ray_times && config.bundles.size == 0 &&
+         config.faults.resource.kind != FaultsConfig::Resource::Kind::kStop;
 }
 
 bool calls_shader(const Config& config, const accel::Accel& accel) {
@@ -112,6 +124,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   if (observed.timeline.most > 0 || observed.ray != nullptr)
     recorder_ =
         std::make_unique<Recorder>(config.testers, most_contexts(config), has_distributor(config), shared_, observed);
+  if (accounts_for_rays(config, observed))
+    times_ = std::make_unique<RayTimes>(shared_.topology.resources(), most_slots(shared_), shared_.packets.size(),
+                                        workload, observed.heat);
   std::vector<SidePorts> sides;  // of shading
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
@@ -132,6 +147,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     settings.blocks = shape_blocks_.get();
     if (parcels_) settings.way_to_memory = parcels_->way_to_memory(r);
     if (recorder_) settings.recording = recorder_->of_resource(id);
+    settings.recording.times = times_.get();
     if (shared_.topology.has_packets()) {
       Network::NodePorts links = network_.ports_at(id);
       record_links(id, [&](std::size_t port, const LinkRecorder& to) { links.out[port].record(to); });
@@ -142,7 +158,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     }
   }
   shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
-  if (recorder_) shading_->record(recorder_->of_shading());
+  Recording recording = recorder_ ? recorder_->of_shading() : Recording{};
+  recording.times = times_.get();
+  shading_->record(recording);
   std::vector<std::vector<ShapeCache::Client>> others(numbers_.caches);  // by L2
   if (kinds_.ray_data) {
     std::vector<SidePorts> ends;

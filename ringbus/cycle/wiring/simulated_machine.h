@@ -40,6 +40,8 @@ class SimulatedMachine {
   const ShapeMemory& shapes() const { return shape_memory_; }
   /// Null unless a timeline or the life of a ray is recorded.
   Recorder* recorder() const { return recorder_.get(); }
+  /// Null unless the time of all rays is accounted for.
+  const RayTimes* ray_times() const { return times_.get(); }
   const MachineParts& parts() const { return parts_; }
   const ShadingAgent& shading() const { return *shading_; }
   /// Null unless links carry more than packets.
@@ -94,8 +96,14 @@ class SimulatedMachine {
   template <class Record>
   void record_links(ResourceId node, const Record& record) {
     const auto& out = shared_.topology.ports(node).out;
-    for (std::size_t port = 0; recorder_ && port < out.size(); ++port)
-      record(port, recorder_->of_link(node, out[port]));
+    if (!recorder_ && !times_) return;
+    // Behind a medium that brings a packet to several resources its way divides.
+    const bool divided = shared_.topology.broadcasts() && node.value >= shared_.topology.resources();
+    for (std::size_t port = 0; port < out.size(); ++port) {
+      LinkRecorder to = recorder_ ? recorder_->of_link(node, out[port]) : LinkRecorder{};
+      if (times_ && !divided) to.histories = &times_->histories();
+      record(port, to);
+    }
   }
 
   Machine shared_;
@@ -112,6 +120,7 @@ class SimulatedMachine {
   std::vector<std::unique_ptr<RayDataChannels>> ray_data_;  // by L2
   std::vector<std::unique_ptr<ResourceAgent>> resources_;
   std::unique_ptr<Recorder> recorder_;  // null: nothing is recorded
+  std::unique_ptr<RayTimes> times_;     // null: the rays' time is not accounted for
   std::unique_ptr<MemorySystem> memory_;
   std::unique_ptr<ShadingAgent> shading_;
 };

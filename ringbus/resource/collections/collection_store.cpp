@@ -91,6 +91,7 @@ std::uint32_t CollectionStore::new_block() {
     next_block_.push_back(0);
     spilled_as_.push_back(kNotSpilled);
     block_rays_.resize(block_rays_.size() + settings_.block_rays);
+    joined_.resize(block_rays_.size());
   }
   if (!spilled) return block;
   ++blocks_spilled_;
@@ -130,6 +131,7 @@ void CollectionStore::add(accel::NodeKey key, std::uint16_t depth, float entry, 
     const std::size_t n = std::min<std::size_t>(b - filled, rays.size() - done);
     std::copy_n(rays.begin() + static_cast<std::ptrdiff_t>(done), n,
                 block_rays_.begin() + std::ptrdiff_t{c.tail} * b + filled);
+    std::fill_n(joined_.begin() + std::ptrdiff_t{c.tail} * b + filled, n, static_cast<std::uint32_t>(now_));
     c.count += static_cast<std::uint32_t>(n);
     done += n;
     if (const std::uint32_t spilled = spilled_as_[c.tail]; spilled != kNotSpilled) {
@@ -165,17 +167,20 @@ std::uint32_t CollectionStore::front_blocks(CollectionId id) const {
   return (front_rays(id) + settings_.block_rays - 1) / settings_.block_rays;
 }
 
-void CollectionStore::take(CollectionId id, std::vector<RayId>& rays) {
+void CollectionStore::take(CollectionId id, std::vector<RayId>& rays, std::vector<std::uint32_t>* joined) {
   Collection& c = collections_[id.value];
   // The chain is filled at the tail and takes go by whole blocks, so all blocks but the last are full. The remainder of
   // `count` in the tail relies on that.
   const std::uint32_t n = front_rays(id);
   ages_.add(now_ - c.since);
   rays.clear();
+  if (joined != nullptr) joined->clear();
   while (rays.size() < n) {
-    const auto first = block_rays_.begin() + std::ptrdiff_t{c.head} * settings_.block_rays;
+    const auto place = std::ptrdiff_t{c.head} * settings_.block_rays;
+    const auto first = block_rays_.begin() + place;
     const auto ids = std::min<std::uint32_t>(settings_.block_rays, n - static_cast<std::uint32_t>(rays.size()));
     rays.insert(rays.end(), first, first + ids);
+    if (joined != nullptr) joined->insert(joined->end(), joined_.begin() + place, joined_.begin() + place + ids);
     const std::uint32_t freed = c.head;
     c.head = next_block_[freed];
     if (settings_.reports_spills && spilled_as_[freed] != kNotSpilled)

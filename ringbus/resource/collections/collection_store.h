@@ -72,8 +72,9 @@ class CollectionStore {
   std::uint32_t front_rays(CollectionId id) const;
   /// How many blocks it frees.
   std::uint32_t front_blocks(CollectionId id) const;
-  /// Moves the rays of the first packet to `rays`; an empty collection ceases to exist.
-  void take(CollectionId id, std::vector<RayId>& rays);
+  /// Moves the rays of the first packet to `rays`; an empty collection ceases to exist. `joined`, if not null, gets the
+  /// low half of the time of ripen() at which each of them joined.
+  void take(CollectionId id, std::vector<RayId>& rays, std::vector<std::uint32_t>* joined = nullptr);
 
   /// The time is `now`, also for ages(): collections that have waited for Settings::ripe_after become ready. A
   /// collection waits from its first ray on, or since rays were taken from it.
@@ -136,6 +137,7 @@ class CollectionStore {
   std::deque<Waiting> waiting_;  // with ripe_after, oldest first; also of collections that have begun to wait anew
   std::uint64_t now_ = 0;
   std::vector<RayId> block_rays_;          // block_rays IDs a block
+  std::vector<std::uint32_t> joined_;      // of each of these IDs: the low half of the time
   std::vector<std::uint32_t> next_block_;  // one a block
   std::vector<std::uint32_t> free_blocks_;
   static constexpr std::uint32_t kNotSpilled = ~0u;

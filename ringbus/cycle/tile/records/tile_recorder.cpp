@@ -33,6 +33,27 @@ void TileRecorder::note_context(PacketId id, std::size_t context, Cycle since, C
                           static_cast<std::uint32_t>(machine_.packet(id).members.size()), SliceKind::kTest});
 }
 
+void TileRecorder::note_tested_rays(PacketId id, std::span<const PacketMember> members, Cycle since, Cycle begun,
+                                    Cycle now, std::span<const WalkTime> walks) {
+  if (hears(id)) {
+    times_->begin_heard_visit(history(id), since, begun, now);
+  } else {
+    history(id).tested(id_.value, begun, now);
+    times_->begin_visit(history(id));
+  }
+  RayStore& store = *machine_.stores[id_.value];
+  std::size_t ray = 0;
+  for (const PacketMember& member : members) {
+    if (!store.owns(member.ray)) continue;
+    const std::uint32_t slot = store.layout().slot(member.ray);  // it may have left it
+    const RayTag& tag = store.record(slot).tag;
+    const Cycle in_test = times_->tested(slot, tag, member.joined, now);
+    if (walks.empty()) continue;
+    const WalkTime& walk = walks[ray++];
+    times_->walked(slot, tag, walk.strips, in_test, walk.in_test, now - walk.end);
+  }
+}
+
 void TileRecorder::note_admitted(std::span<const RayId> rays, Cycle now) {
   for (const RayId ray : rays)
     if (recording_.ray->ray->is(ray))

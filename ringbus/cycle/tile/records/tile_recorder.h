@@ -6,8 +6,10 @@
 
 #include "core/types/workload.h"
 #include "ringbus/cycle/testers/tester.h"
+#include "ringbus/cycle/tile/walk/walk_time.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/resource/resource.h"
+#include "ringbus/results/ray_times.h"
 #include "ringbus/results/recording.h"
 #include "ringbus/results/trace.h"
 
@@ -19,7 +21,11 @@ class TileRecorder {
  public:
   /// Keeps a reference to the machine.
   TileRecorder(ResourceId id, Machine& machine, const Recording& recording, TraceWindow steps)
-      : machine_(machine), id_(id), recording_(recording), trace_(id.value, steps) {}
+      : machine_(machine),
+        id_(id),
+        recording_(recording),
+        times_(recording.times != nullptr ? &recording.times->of(id) : nullptr),
+        trace_(id.value, steps) {}
 
   const Trace& trace() const { return trace_; }
   void step(Cycle now, StepKind kind, std::uint32_t packet, std::size_t rays) { trace_.note(now, kind, packet, rays); }
@@ -31,12 +37,25 @@ class TileRecorder {
   }
 
   void dispatched(Cycle begin, Cycle end, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip) {
+    if (times_ != nullptr && has_trip && kind != SliceKind::kRetire && !hears(packet))
+      history(packet).dispatched(begin, end);
     if (has_slices()) [[unlikely]]
       note_dispatch(begin, end, ids, kind, packet, has_trip);
   }
   void issued(PacketId id, Cycle now) {
+    if (times_ != nullptr) history(id).begin(now);
     if (has_slices()) [[unlikely]]
       note_issued(id, now);
+  }
+  /// A packet in the issue queue has had its shapes since `at`.
+  void shapes_came(PacketId id, Cycle at) {
+    if (times_ != nullptr) history(id).until(at, RayStage::kShapes);
+  }
+  /// Members of packet `id` that live here have been tested. `walks`: what each did by itself, in their order; empty if
+  /// they were tested together.
+  void tested_rays(PacketId id, std::span<const PacketMember> members, Cycle since, Cycle begun, Cycle now,
+                   std::span<const WalkTime> walks = {}) {
+    if (times_ != nullptr) note_tested_rays(id, members, since, begun, now, walks);
   }
   /// `since`, `begun`: the packet took the context, and its tests began.
   void in_context(PacketId id, std::size_t context, Cycle since, Cycle begun, Cycle end) {
@@ -52,16 +71,25 @@ class TileRecorder {
     if (has_ray()) [[unlikely]]
       note_tested(packet, id, at, outcome, resource);
   }
-  void retired(const Packet& packet, PacketId id, Cycle now) {
+  /// `part`: other members of the packet are under way.
+  void retired(const Packet& packet, PacketId id, Cycle now, bool part = false) {
+    if (times_ != nullptr && !part) history(id).close();
     if (has_ray()) [[unlikely]]
       note_retired(packet, id, now);
   }
-  void completed(const HitBatch& rays, Cycle now) {
+  void completed(const HitBatch& rays, std::span<const std::uint32_t> slots, Cycle now) {
+    if (times_ != nullptr)
+      for (std::size_t i = 0; i < rays.size(); ++i) times_->done(slots[i], rays[i].tag, now);
     if (has_ray()) [[unlikely]]
       note_completed(rays, now);
   }
 
  private:
+  PacketHistory& history(PacketId id) const { return recording_.times->histories()[id.value]; }
+  /// Others hear the packet of another resource at the same time.
+  bool hears(PacketId id) const { return machine_.topology.broadcasts() && machine_.packet(id).owner != id_; }
+  void note_tested_rays(PacketId id, std::span<const PacketMember> members, Cycle since, Cycle begun, Cycle now,
+                        std::span<const WalkTime> walks);
   bool has_slices() const { return recording_.slices != nullptr; }
   bool has_ray() const { return recording_.ray != nullptr; }
   void note_dispatch(Cycle begin, Cycle end, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
@@ -76,6 +104,7 @@ class TileRecorder {
   Machine& machine_;
   ResourceId id_;
   Recording recording_;
+  ResourceTimes* times_;  // null: rays' time is not accounted for
   Trace trace_;
 };
 

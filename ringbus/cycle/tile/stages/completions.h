@@ -33,7 +33,7 @@ class Completions {
   /// Sends all that have been taken.
   void hand_over(Cycle now) {
     if (done_.empty()) return;
-    recorder_.completed(done_, now);
+    recorder_.completed(done_, slots_, now);
     sink_.record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(done_.size())});
     recorder_.step(now, StepKind::kComplete, 0, done_.size());
     std::vector<Cycle> placed;

@@ -193,6 +193,7 @@ bool Dispatcher::handle_issue(Cycle now) {
   if (tested && !context_is_free()) return false;
   const IssueQueue::Entry entry = issue_.take();
   parts_.retirement.trips().inject(id.value, now);
+  if (entry.takes_data) parts_.recorder.shapes_came(id, parts_.shapes.here_since(entry.user));
   parts_.recorder.step(now, StepKind::kIssue, id.value, packet.members.size());
   parts_.dispatch.occupy(now, packet.members.size(), SliceKind::kIssue, id);
   if (tested) {

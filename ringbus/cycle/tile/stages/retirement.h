@@ -41,7 +41,7 @@ class Retirement {
   /// Members of packet `id` come back before the rest of it.
   void retire_part(PacketId id, Packet& part, Cycle now) {
     recorder_.step(now, StepKind::kRetire, id.value, part.members.size());
-    recorder_.retired(part, id, now);
+    recorder_.retired(part, id, now, true);
     const std::size_t entries = needs_.read_at_owner(part);
     if (entries > 0) dispatch_.occupy(now, entries, SliceKind::kRetire, id);
     sort_ids(resource_.retire_part(part), entries, id, now);

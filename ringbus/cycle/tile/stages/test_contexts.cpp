@@ -134,6 +134,8 @@ void TestContexts::end(std::size_t place, Cycle now) {
   }
   parts_.recorder.step(now, StepKind::kTested, id.value, packet.members.size());
   parts_.recorder.in_context(id, place, context.since, context.begun, now);
+  parts_.recorder.tested_rays(id, packet.members, context.since, context.begun, now,
+                              context.subtree ? visits_.times(place) : std::span<const WalkTime>());
   if (!context.subtree) parts_.shapes.release(user(place), now);
   phases_.enter(place, ContextPhase::kFree);
   context.subtree = false;
@@ -152,6 +154,7 @@ void TestContexts::end_part(std::size_t place, Cycle now) {
   Packet& packet = parts_.machine.packet(context.packet);
   context.results.take_due(now, packet, part_.packet, part_.slots);
   phases_.enter(place, ContextPhase::kComputing, context.results.first());
+  parts_.recorder.tested_rays(context.packet, part_.packet.members, context.since, context.begun, now);
   part_.take_completed(context.completed, context.freed_slots);
   if (!context.tested.empty()) {
     context.tested = context.results.slots;

@@ -9,16 +9,18 @@ void SubtreeVisits::prepare(std::size_t context, WalkSteps& ways) {
   Visit& visit = visits_[context];
   std::swap(visit.ways, ways);
   visit.rays = static_cast<std::uint32_t>(visit.ways.ends.size());
+  visit.times.assign(visit.rays, {});
   visit.inverted.clear();
 }
 
 void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now) {
   const std::vector<std::uint32_t>& ends = visits_[context].ways.ends;
-  std::uint32_t first = 0;
+  std::uint32_t first = 0, place = 0;
   std::uint64_t records = reads - ends.size() + 1;
   for (const std::uint32_t end : ends) {
     const std::uint32_t index = new_ray();
-    rays_[index] = {first, end, static_cast<std::uint32_t>(context), Ray::Phase::kBegins};
+    visits_[context].times[place].strips = end - first;
+    rays_[index] = {first, end, static_cast<std::uint32_t>(context), place++, Ray::Phase::kBegins};
     first = end;
     const Cycle at = tester_.read(now, records);
     records = 1;
@@ -46,6 +48,7 @@ void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
   if (ray.step == ray.end) {
     ray.phase = Ray::Phase::kFree;
     free_rays_.push_back(index);
+    visit.times[ray.place].end = now;
     visit_ended_ |= --visit.rays == 0;
     return;
   }
@@ -73,7 +76,9 @@ void SubtreeVisits::test(std::uint32_t index, Cycle now) {
   }
   ray.phase = Ray::Phase::kInTest;
   ++in_test_;
-  events_.add(now, tester_.ray(at, tests), index);
+  const Cycle end = tester_.ray(at, tests);
+  visit.times[ray.place].in_test += end - now;
+  events_.add(now, end, index);
 }
 
 void SubtreeVisits::run(Cycle now) {

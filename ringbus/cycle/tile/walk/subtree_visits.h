@@ -1,12 +1,14 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "ringbus/cycle/shapes/shape_buffer.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/testers/tester.h"
 #include "ringbus/cycle/tile/walk/subtree_walk.h"
+#include "ringbus/cycle/tile/walk/walk_time.h"
 #include "ringbus/time/event_wheel.h"
 
 namespace carousel::ringbus::cycle {
@@ -27,6 +29,8 @@ class SubtreeVisits {
   /// Starts them. `reads`: the records that the visit reads; those of its rays are the last.
   void begin(std::size_t context, std::uint32_t reads, Cycle now);
   bool ended(std::size_t context) const { return visits_[context].rays == 0; }
+  /// What its rays did, in their order, when it has ended.
+  std::span<const WalkTime> times(std::size_t context) const { return visits_[context].times; }
   /// Forgets the visit, which has begun.
   void drop(std::size_t context, Cycle now);
 
@@ -54,7 +58,7 @@ class SubtreeVisits {
  private:
   struct Ray {
     std::uint32_t step = 0, end = 0;
-    std::uint32_t context = 0;
+    std::uint32_t context = 0, place = 0;  // in its visit
     enum class Phase : std::uint8_t { kFree, kBegins, kWaits, kInTest, kDropped } phase = Phase::kFree;
   };
   struct Inverted {
@@ -64,6 +68,7 @@ class SubtreeVisits {
   struct Visit {
     WalkSteps ways;
     std::uint32_t rays = 0;          // that have not ended
+    std::vector<WalkTime> times;     // by ray
     std::vector<Inverted> inverted;  // matrices, and when
   };
 

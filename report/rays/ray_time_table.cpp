@@ -1,0 +1,33 @@
+#include "report/rays/ray_time_table.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "report/text/number_text.h"
+
+namespace carousel::report {
+
+std::string ray_time_table(const RayTime& time) {
+  const RayStageCounts stages = time.stages();
+  const std::uint64_t cycles = cycles_of(stages);
+  std::string out = fmt::format("{:<13}{:.1f} cycles a ray", "ray time", ratio(cycles, time.rays()));
+  for (const Counter<RayStageCounts>& row : kCounters<RayStageCounts>)
+    if (const double part = ratio(row.value(stages), cycles); part >= 0.01)
+      out += fmt::format("   {} {}", row.name, percent(part));
+  return out + "\n";
+}
+
+std::string heat_table(const Heat& heat) {
+  constexpr std::size_t kShown = 3;
+  if (heat.slowest.empty()) return "";
+  std::string out = fmt::format("{:<13}", "slow pixels");
+  for (std::size_t i = 0; i < std::min(kShown, heat.slowest.size()); ++i) {
+    const PixelHeat& pixel = heat.slowest[i];
+    out += fmt::format("{}{},{}: {} cycles of {} rays", i == 0 ? "" : "   ", pixel.x, pixel.y, grouped(pixel.cycles),
+                       pixel.rays);
+  }
+  return out + fmt::format("   {} a pixel\n", grouped(static_cast<std::uint64_t>(heat.cycles_mean + 0.5)));
+}
+
+}  // namespace carousel::report
