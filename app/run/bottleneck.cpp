@@ -10,6 +10,7 @@
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/verdict/bottleneck_search.h"
+#include "ringbus/verdict/cold_caches.h"
 #include "ringbus/verdict/small_frame.h"
 
 namespace carousel::app {
@@ -94,7 +95,11 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
         {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high, gain.together});
   for (const ringbus::GainPhase& phase : found.phases)
     out.phases.push_back({phase.begin, phase.end, phase.time, phase.name, phase.action, phase.gain});
-  return report::judge_gains(std::move(out));
+  report::Bottleneck judged = report::judge_gains(std::move(out));
+  const ringbus::MemoryReads reads = ringbus::reads_between(*run.cycle, ringbus::slots_of(prepared.config()));
+  if (!ringbus::gains_of_cold_caches(judged.limits) || reads.first_share() < ringbus::kColdShare) return judged;
+  judged.cold_caches = report::ColdCaches{judged.limits, reads.reads, reads.first};
+  return report::judge_gains(std::move(judged));
 }
 
 report::Bound bound_of(const ringbus::RunResult& result) {

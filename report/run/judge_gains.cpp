@@ -6,10 +6,16 @@
 
 #include "core/statistics/worth_naming.h"
 #include "report/text/number_text.h"
+#include "report/text/ratio.h"
 
 namespace carousel::report {
 
 namespace {
+
+const BottleneckGain& named_cold(const Bottleneck& b) {
+  return *std::find_if(b.gains.begin(), b.gains.end(),
+                       [&](const BottleneckGain& gain) { return gain.name == b.cold_caches->named; });
+}
 
 std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (!b.complete) return "not found out: the search was interrupted";
@@ -21,6 +27,12 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
         grouped(small->paths), grouped(small->slots), 100 * small->between, grouped(small->least_paths));
   if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
+  if (const auto& cold = b.cold_caches)
+    return fmt::format(
+        "not found out: {} gains {}, but {:.0f} % of the lines that memory reads between fill and drain are read for "
+        "the "
+        "first time; in a larger picture, with warmer caches, another class may gain most",
+        cold->named, gain_text(named_cold(b)), 100 * ratio(cold->first, cold->reads));
   if (named == nullptr) {
     const BottleneckGain& best = b.gains.front();
     const std::string others = best.together > 1 ? fmt::format(" with {} others", best.together - 1) : "";
@@ -55,6 +67,7 @@ Bottleneck judge_gains(Bottleneck found) {
   const BottleneckGain* named = nullptr;
   for (const BottleneckGain& gain : found.gains)
     if (named == nullptr && worth_naming(gain.gain, gain.low)) named = &gain;
+  if (found.cold_caches) named = nullptr;
   found.limits = named == nullptr ? "" : named->name;
   found.rivals.clear();
   for (const BottleneckGain& gain : found.gains)

@@ -72,6 +72,20 @@ void describe(V& v, const FrameTooSmall& r) {
   v.field("least_paths", r.least_paths, "paths", "paths that would do on this machine, about");
 }
 
+/// Reads of memory of which so many are the first of their lines that the named class may gain only while caches are
+/// cold.
+struct ColdCaches {
+  std::string named;
+  std::uint64_t reads = 0, first = 0;
+};
+
+template <class V>
+void describe(V& v, const ColdCaches& r) {
+  v.field("named", r.named, "", "class of parts that would be named");
+  v.field("reads", r.reads, "lines", "lines read from memory between fill and drain");
+  v.field("first", r.first, "lines", "those that had not been read before: a larger frame has hardly more of them");
+}
+
 /// A stretch of the first pilot in which one class of parts gains most.
 struct BottleneckPhase {
   double begin = 0, end = 0, time = 0;
@@ -97,6 +111,7 @@ struct Bottleneck {
   bool whole_frame = false;
   std::uint64_t replicates = 0, paths = 0, rays = 0;
   std::optional<FrameTooSmall> frame_too_small{};
+  std::optional<ColdCaches> cold_caches{};
   std::vector<BottleneckGain> gains{};
   std::vector<BottleneckPhase> phases{};
 };
@@ -123,6 +138,10 @@ void describe(V& v, const Bottleneck& r) {
   v.field("rays", r.rays, "rays", "rays of the pilot, which are simulated for each class");
   v.section("frame_too_small", r.frame_too_small,
             "the frame mostly fills and drains the machine, so that nothing is found out; absent otherwise");
+  v.section(
+      "cold_caches", r.cold_caches,
+      "the memory gains most, and a quarter or more of its reads fetch what nobody had asked for, so that no class "
+      "is named; absent otherwise");
   v.section("gains", r.gains, "gain of each class, greatest first");
   v.section(
       "phases", r.phases,

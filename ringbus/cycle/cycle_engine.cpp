@@ -134,6 +134,7 @@ class CycleRun {
     if (loss.times() && loss.times()->noticed > 0) c.stop = loss.times();
     for (const auto& tile : machine_.resources()) out.packets_discarded += tile->packets_discarded();
     c.memory = machine_.memory().counts();
+    c.first_reads = first_reads();
     c.uses = uses();
     c.progress = log_.samples();
     c.all_begun = all_begun_;
@@ -228,11 +229,17 @@ class CycleRun {
     }
   }
 
+  std::uint64_t first_reads() const {
+    std::uint64_t sum = 0;
+    for (const auto& memory : machine_.memory().memories()) sum += memory->first_reads();
+    return sum;
+  }
+
   void note_progress(Cycle at) {
     const ShadingAgent& shading = machine_.shading();
     const bool begun = shading.all_begun() && !all_begun_, wanted = log_.wants(shading.completed());
     if (!begun && !wanted) return;
-    ProgressSample sample{at, shading.completed(), {}};
+    ProgressSample sample{at, shading.completed(), {}, machine_.memory().counts().lines, first_reads()};
     for (const ClassUse& use : uses()) sample.busy.push_back(use.busy);
     if (begun) all_begun_ = sample;
     if (wanted) log_.add(std::move(sample));

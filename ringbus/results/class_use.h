@@ -19,8 +19,9 @@ struct ClassUse {
 /// How far a simulated machine had come at a time.
 struct ProgressSample {
   Cycle at = 0;
-  std::uint64_t completed = 0;  ///< rays
-  std::vector<Cycle> busy;      ///< busy cycles of each class, in the order of CycleResult::uses
+  std::uint64_t completed = 0;               ///< rays
+  std::vector<Cycle> busy;                   ///< busy cycles of each class, in the order of CycleResult::uses
+  std::uint64_t reads = 0, first_reads = 0;  ///< lines read from memory, and those read for the first time
   friend bool operator==(const ProgressSample&, const ProgressSample&) = default;
 };
 

@@ -123,6 +123,7 @@ struct CycleResult {
   std::optional<CacheCounts> own_caches;                 ///< sum over resources, if they have caches of their own
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
   MemoryCounts memory;                                   ///< of all memories
+  std::uint64_t first_reads = 0;                         ///< lines read from memory that had not been read before
   std::size_t memories = 1;
   std::optional<RayDataBytes> ray_data;  ///< if any is in memory
   CacheDrain drain;

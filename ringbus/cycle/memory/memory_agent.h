@@ -10,6 +10,7 @@
 
 #include "core/config/fields/memory.h"
 #include "core/statistics/memory_counts.h"
+#include "ringbus/cycle/memory/touched_lines.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/dram_use.h"
@@ -43,6 +44,8 @@ class MemoryAgent : public Agent {
 
   /// So far; the bytes are those that it has read.
   MemoryCounts counts() const { return {counts_.lines, counts_.lines * line_bytes_, counts_.lines_written, busy()}; }
+  /// Reads so far of lines that had not been read before.
+  std::uint64_t first_reads() const { return first_reads_; }
   std::uint64_t line_bytes() const { return line_bytes_; }  ///< of a line of its messages
   Cycle last_step() const { return last_step_; }
   /// The time at which all that it has taken so far is done.
@@ -66,6 +69,7 @@ class MemoryAgent : public Agent {
   bool count(std::uint64_t request, Cycle now) {
     const bool write = (request & kWriteLine) != 0;
     ++(write ? counts_.lines_written : counts_.lines);
+    if (!write) first_reads_ += touched_.insert(request);
     if (log_ != nullptr) [[unlikely]]
       log_->push_back({now, (request & ~kWriteLine) * line_bytes_, static_cast<std::uint32_t>(line_bytes_), write});
     return write;
@@ -75,7 +79,9 @@ class MemoryAgent : public Agent {
   std::uint64_t line_bytes_;
   std::vector<Client> clients_;
   MemoryCounts counts_;  // of lines only
-  Cycle next_ = 0;       // next(), at the end of the last run()
+  TouchedLines touched_;
+  std::uint64_t first_reads_ = 0;
+  Cycle next_ = 0;  // next(), at the end of the last run()
   Cycle last_step_ = 0;
   CounterSamples samples_;
   MemoryLog* log_ = nullptr;

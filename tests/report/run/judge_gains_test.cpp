@@ -70,6 +70,18 @@ TEST(JudgeGains, SaysThatTheFrameIsTooSmall) {
             "between); from some 36,000 paths on, or with fewer slots, it can be said");
 }
 
+TEST(JudgeGains, NamesNothingOfColdCaches) {
+  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 460},
+                                    .gains = {gain("boxes", 0.5, -0.1, 0.9), gain("memory", 0.48, 0.45, 0.51)}});
+  EXPECT_THAT(b.limits, IsEmpty());
+  EXPECT_THAT(b.rivals, IsEmpty());
+  EXPECT_EQ(
+      b.verdict,
+      "not found out: memory gains +48.0 % (+45.0 to +51.0 %), but 46 % of the lines that memory reads between fill "
+      "and drain are read for the first time; in a larger picture, with warmer caches, another class may gain "
+      "most");
+}
+
 TEST(JudgeGains, SaysThatThePilotIsNotLikeTheRun) {
   const Bottleneck b = judge_gains({.unlike = "boxes are busy 10 % of its time, and 40 % of the run's"});
   EXPECT_EQ(b.verdict,
