@@ -10,6 +10,7 @@
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/series.h"
 #include "app/build_report/structure_levels.h"
+#include "app/charges/charges.h"
 #include "app/host/machine_info.h"
 #include "app/host/program_info.h"
 #include "app/plugins/plugins.h"
@@ -157,6 +158,15 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   add_effects(r.shading, prepared.scene, config);
   if (result.series) (result.cycle ? r.time_series : r.host.time_series) = series_section(*result.series);
   if (result.cycle) add_cycles(r, *result.cycle, config, prepared.accel);
+  if (result.cycle) {
+    r.charges.emplace();
+    for (const Charge* charge : uncharged(prepared.located, ringbus::scene_facts(prepared.accel))) {
+      report::Charge& row = r.charges->emplace_back(report::Charge{charge->name, charge->meaning});
+      if (*charge->key == 0) continue;
+      row.key = charge->key;
+      row.set = fmt::format("{}={}", charge->key, charge->charged);
+    }
+  }
   add_energy(r, config, ringbus::scene_facts(prepared.accel));
   if (result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) r.faults.emplace().stop = stop(config, result);
   if (verifying) r.verify = verify(*verifying);

@@ -15,6 +15,7 @@
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/kernels.h"
 #include "app/area/machine_area.h"
+#include "app/charges/charges.h"
 #include "app/host/log.h"
 #include "app/host/machine_info.h"
 #include "app/run/memory_need.h"
@@ -313,7 +314,9 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
                  const std::function<void(const Prepared&)>& before_scene,
                  const std::function<ringbus::Transport*()>& ranks) {
   Prepared p;
-  p.located = load_config(read_config_file(arguments.config), arguments.sets, options);
+  const ConfigText text = read_config_file(arguments.config);
+  p.located =
+      arguments.charge_all ? load_charged(text, arguments.sets, options) : load_config(text, arguments.sets, options);
   if (!options.ranks) require_one_rank(p);
   if (!options.force) require_flow(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();

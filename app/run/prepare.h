@@ -23,7 +23,8 @@ namespace carousel::app {
 struct ConfigArguments {
   std::string config;
   std::vector<std::string> sets;
-  bool strict = false;  ///< keys that the machine ignores are errors
+  bool strict = false;      ///< keys that the machine ignores are errors
+  bool charge_all = false;  ///< everything is charged that has a key (app/charges/charges.h)
 };
 
 /// A configuration with its scene and acceleration structure, ready to run.

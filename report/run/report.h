@@ -79,6 +79,7 @@ struct Report {
   std::optional<Energy> energy;
   std::optional<Area> area;
   std::optional<std::vector<CostConstant>> costs;
+  std::optional<std::vector<Charge>> charges;
   std::optional<Bound> bound;
   std::optional<Bottleneck> bottleneck;
   std::optional<Faults> faults;
@@ -138,6 +139,7 @@ void describe(V& v, const Report& r) {
   v.section("energy", r.energy, "energy of the simulated machine, with energy.profile");
   v.section("area", r.area, "area of the simulated machine, with energy.profile");
   v.section("costs", r.costs, "every number of energy and area, with its source");
+  v.section("charges", r.charges, "what costs nothing in this run, and the keys that charge it (cycle)");
   v.section("bound", r.bound, "rate that each class of parts alone would allow");
   v.section("bottleneck", r.bottleneck, "class of parts that limits the machine, found by relaxing each in turn");
   v.section("faults", r.faults, "faults that were asked for and their cost");

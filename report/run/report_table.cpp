@@ -364,6 +364,11 @@ std::string report_table(const Report& report) {
   if (report.ray_time) table.text(ray_time_table(*report.ray_time));
   if (report.heat) table.text(heat_table(*report.heat));
   if (report.bottleneck) table.text(verdict_table(*report.bottleneck));
+  if (report.charges && !report.charges->empty()) {
+    std::string names;
+    for (const Charge& charge : *report.charges) names += (names.empty() ? "" : ", ") + charge.name;
+    table.line("not charged", "{}", names);
+  }
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));

@@ -148,6 +148,7 @@ void cycle_words(Words& w) {
       "N to N of the rays, N of the time: *", "bottleneck.phases",
       "a stretch of the pilot's completed rays, its part of the cycles, and the class that gains most in it; shown "
       "if the class changes");
+  w.line("not charged").item("*", "charges[].name", "what costs nothing in this run; run --charge-all charges it");
   w.line("bound").item(
       "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",
       "the rate that the tightest class of parts would allow if it were busy all the time, and the part "

@@ -49,4 +49,18 @@ void describe(V& v, const Engine& r) {
   v.field("reason", r.reason, "", "reason for the value of deterministic");
 }
 
+/// Something that costs the simulated machine nothing in this run.
+struct Charge {
+  std::string name, meaning;
+  std::optional<std::string> key{}, set{};
+};
+
+template <class V>
+void describe(V& v, const Charge& r) {
+  v.field("name", r.name, "", "what is not charged");
+  v.field("meaning", r.meaning, "", "the same in words");
+  v.field("key", r.key, "", "key that charges it; absent if none does");
+  v.field("set", r.set, "", "value of --set that charges it, as carousel run --charge-all does");
+}
+
 }  // namespace carousel::report

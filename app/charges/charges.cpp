@@ -1,0 +1,90 @@
+#include "app/charges/charges.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <nlohmann/json.hpp>
+
+#include "core/config/write.h"
+#include "core/system/error.h"
+
+namespace carousel::app {
+
+namespace {
+
+constexpr std::array kCharges{
+    Charge{"sorted_ids", "IDs of rays that hit are sorted by child and appended to collections in no time",
+           "collections.sort_ids_per_cycle", "0", "8"},
+    Charge{"ray_reads", "testers read any number of ray records in a cycle", "rays.reads_per_cycle", "0", "1"},
+    Charge{"l2_answers", "a shared cache answers with any number of bytes in a cycle",
+           "memory.l2_answer_bytes_per_cycle", "0", "16"},
+    Charge{"l2_misses", "a shared cache keeps track of any number of lines on their way", "memory.l2_mshrs", "0", "16"},
+    Charge{"l1_misses", "a resource's own cache keeps track of any number of lines on their way", "memory.l1_mshrs",
+           "0", "8"},
+    Charge{"path_state", "the states of paths are where shading needs them", "memory.path_state", "free", "memory"},
+    Charge{"film", "light is added to the picture for nothing", "memory.film", "free", "memory"},
+    Charge{"sky_map", "texels and tables of the sky's map are where shading needs them", "memory.sky_map", "free",
+           "memory"},
+    Charge{"ray_records", "rays have no master copies in memory", "memory.ray_records", "resource", "master"},
+    Charge{"products", "products of surfaces' effects take no time", "shading.products_per_cycle", "0", "8"},
+    Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
+    Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "", "topology.shape",
+           "independent"},
+    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage", "quantised"},
+};
+
+/// The value of a key as `--set` takes it; empty if the configuration has none.
+std::string value_of(const nlohmann::ordered_json& config, std::string_view key) {
+  const nlohmann::ordered_json* at = &config;
+  while (!key.empty()) {
+    const std::size_t dot = std::min(key.find('.'), key.size());
+    const auto found = at->find(std::string(key.substr(0, dot)));
+    if (found == at->end()) return "";
+    at = &*found;
+    key.remove_prefix(std::min(dot + 1, key.size()));
+  }
+  return at->is_string() ? at->get<std::string>() : at->dump();
+}
+
+bool makes_use(const Charge& charge, const LocatedConfig& located, const nlohmann::ordered_json& json,
+               const SceneFacts& scene) {
+  const std::string_view key = charge.key;
+  if (key.empty()) return value_of(json, charge.where_key) == charge.where_value;
+  return value_of(json, key) == charge.free && in_use(located.config, scene, key);
+}
+
+}  // namespace
+
+std::span<const Charge> all_charges() {
+  return kCharges;
+}
+
+std::vector<const Charge*> uncharged(const LocatedConfig& located, const SceneFacts& scene) {
+  const nlohmann::ordered_json json = config_json(located.config);
+  std::vector<const Charge*> out;
+  for (const Charge& charge : kCharges)
+    if (makes_use(charge, located, json, scene)) out.push_back(&charge);
+  return out;
+}
+
+LocatedConfig load_charged(const ConfigText& text, const std::vector<std::string>& sets,
+                           const ValidateOptions& options) {
+  LocatedConfig out = load_config(text, sets, options);
+  std::vector<std::string> charged;
+  for (const Charge* charge : uncharged(out, {})) {
+    if (*charge->key == 0) continue;
+    std::vector<std::string> more = charged;
+    more.push_back(std::string(charge->key) + "=" + charge->charged);
+    std::vector<std::string> all = more;
+    all.insert(all.end(), sets.begin(), sets.end());
+    try {
+      out = load_config(text, all, options);
+      charged = std::move(more);
+    } catch (const ConfigError&) {  // the machine cannot have it, and the run lists it as free
+    }
+  }
+  return out;
+}
+
+}  // namespace carousel::app

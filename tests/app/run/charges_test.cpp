@@ -1,0 +1,89 @@
+// What costs nothing in a run (`charges`): each key that charges something makes the machine slower, or moves more
+// bytes.
+#include "app/charges/charges.h"
+
+#include <fmt/format.h>
+
+#include "tests/app/time/timed_run.h"
+
+namespace carousel::charges_test {
+namespace {
+
+// Memory is near and slow enough for the number of lines on their way to matter, and surfaces have effects.
+const char* const kMachine =
+    "scene: {builtin: spheres, triangles: 3000}\nimage: {width: 24, height: 16, samples: 1, max_depth: 3}\n"
+    "topology: {resources: 4}\npackets: {rays: 16}\ncollections: {ready: 16}\nrays: {slots_per_resource: 64}\n"
+    "memory: {l1_kib: 4, l2_kib: 16, shape_buffer_kib: 2, dram_latency_cycles: 400}\n";
+
+class Charges : public TimedRun {
+ protected:
+  static std::vector<std::string> names(const Json& report) {
+    std::vector<std::string> out;
+    for (const Json& charge : report["charges"]) out.push_back(charge["name"]);
+    return out;
+  }
+  static bool lists(const Json& report, const std::string& name) {
+    const auto all = names(report);
+    return std::find(all.begin(), all.end(), name) != all.end();
+  }
+  static std::uint64_t bytes_of(const Json& report) {
+    std::uint64_t sum = 0;
+    for (const Json& row : report["bytes"]) sum += row["bytes"].get<std::uint64_t>();
+    return sum;
+  }
+};
+
+TEST_F(Charges, EachKeyTakesItsRowAwayAndCostsCyclesOrBytes) {
+  const Json base = report(kMachine);
+  ASSERT_FALSE(base["charges"].empty());
+  for (const Json& charge : base["charges"]) {
+    const std::string name = charge["name"];
+    ASSERT_TRUE(charge.contains("set")) << name;
+    const Json charged = report(kMachine, {charge["set"].get<std::string>()});
+    EXPECT_FALSE(lists(charged, name)) << name;
+    EXPECT_EQ(names(charged).size() + 1, names(base).size()) << name;
+    const bool more = charged["engine"]["cycles"] > base["engine"]["cycles"] || bytes_of(charged) > bytes_of(base);
+    EXPECT_TRUE(more) << name;
+    EXPECT_EQ(charged["digest"], base["digest"]) << name;
+  }
+}
+
+TEST_F(Charges, AreOfTheMachineAndSceneOfTheRun) {
+  const Json ring = report(kMachine), stack = report(kMachine, {"topology.shape=independent"});
+  EXPECT_TRUE(lists(ring, "sorted_ids"));
+  EXPECT_FALSE(lists(stack, "sorted_ids"));
+  EXPECT_FALSE(lists(ring, "stack"));
+  EXPECT_TRUE(lists(stack, "stack"));
+  EXPECT_TRUE(lists(report(kMachine, {"bvh.storage=quantised"}), "quantised_nodes"));
+  EXPECT_FALSE(lists(ring, "sky_map"));
+  EXPECT_FALSE(lists(report(kMachine, {"memory.l1_kib=0"}), "l1_misses"));
+  EXPECT_FALSE(report(kMachine, {"engine.kind=native"}).contains("charges"));
+}
+
+TEST_F(Charges, ChargeAllLeavesOnlyWhatHasNoKey) {
+  const Json base = report(kMachine);
+  const auto run = [&](std::vector<std::string> more) {
+    std::vector<std::string> words{"run", "machine.yaml", "--charge-all", "--quiet", "--force", "--out", "all"};
+    for (const char* set : {"engine.kind=cycle", "engine.what_if=false"}) words.insert(words.end(), {"--set", set});
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome outcome = program_.run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(program_.read("all/report.json"));
+  };
+  const Json all = run({});
+  EXPECT_TRUE(all["charges"].empty()) << all["charges"].dump();
+  EXPECT_GT(all["engine"]["cycles"], base["engine"]["cycles"]);
+  EXPECT_EQ(all["digest"], base["digest"]);
+  // The resolved configuration is the charged machine.
+  const Outcome again = program_.run({"run", "all/config.resolved.yaml", "--quiet", "--force", "--out", "again"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_EQ(Json::parse(program_.read("again/report.json"))["engine"]["epochs"], all["engine"]["epochs"]);
+  // What the user sets stays, and what the machine may not have is left as it is.
+  const Json own = run({"--set", "memory.film=free", "--set", "rays.placement=addressed"});
+  EXPECT_TRUE(lists(own, "film"));
+  EXPECT_TRUE(lists(own, "ray_records"));
+  EXPECT_FALSE(lists(own, "path_state"));
+}
+
+}  // namespace
+}  // namespace carousel::charges_test
