@@ -1,8 +1,8 @@
 #include "app/build_report/experiment.h"
 
 #include <optional>
+#include <span>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -62,7 +62,7 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
-                            ringbus::MemoryLog* memory, std::vector<ringbus::PixelCost>& heat) {
+                            ringbus::MemoryLog* memory, std::span<ringbus::PixelCost> heat) {
   log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
@@ -73,8 +73,6 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   if (trace != nullptr) options.timeline = trace->wanted();
   options.memory = memory;
   options.ray_times = true;
-  if (no_heat_because(p).empty())
-    heat.resize(static_cast<std::size_t>(p.config().image.width * p.config().image.height));
   options.heat = heat;
   options.transport = job.ranks();
   if (job.ranks() != nullptr) {
@@ -137,22 +135,9 @@ report::Report play_requests(const Prepared& p, const InterruptScope& interrupt)
 
 }  // namespace
 
-std::string no_heat_because(const Prepared& p) {
-  const Config& config = p.config();
-  if (config.engine.kind != EngineKind::kCycle) return "is of the native engine; expected engine.kind: cycle";
-  if (config.workload.kind != WorkloadConfig::Kind::kRays) return "makes no picture; expected workload: rays";
-  if (config.bundles.size > 0) return "has bundles, whose rays have no packets of their own; expected bundles.size: 0";
-  if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
-    return "begins rays anew when a resource stops; expected another faults.resource.kind";
-  if (config.rays.placement == Placement::kFirstTaker || config.rays.placement == Placement::kAddressed)
-    return fmt::format("has rays.placement: {}, by which resources give slots away; expected balanced or round_robin",
-                       enum_name(config.rays.placement));
-  return "";
-}
-
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory,
-                        std::vector<ringbus::PixelCost>* heat) {
+                        std::span<ringbus::PixelCost> heat) {
   std::optional<accel::HitOracle> oracle;
   std::optional<accel::VerifyingWorkload> verifying;
   if (p.config().verify == Verify::kReference) {
@@ -170,10 +155,8 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     places.emplace(census, job);
     if (memory == nullptr) memory = &requests;
   }
-  std::vector<ringbus::PixelCost> own_heat;
-  std::vector<ringbus::PixelCost>& pixels = heat != nullptr ? *heat : own_heat;
   const ringbus::RunResult result =
-      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, pixels);
+      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, heat);
   if (job.ranks() != nullptr) {
     share_signal(*job.ranks());
     job.join();
@@ -187,8 +170,8 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
   add_census(report, census, p.accel);
-  if (result.complete && !pixels.empty())
-    report.heat = heat_section(pixels, static_cast<std::uint32_t>(p.config().image.width));
+  if (result.complete && !heat.empty())
+    report.heat = heat_section(heat, static_cast<std::uint32_t>(p.config().image.width));
   report.host.draw_seconds = job.draw_seconds();
   if (places && result.complete) {
     report.sampled = estimates(p, job, *places, result, *memory);

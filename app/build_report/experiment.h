@@ -1,7 +1,6 @@
 #pragma once
 
-#include <string>
-#include <vector>
+#include <span>
 
 #include "app/host/interrupt.h"
 #include "app/run/prepare.h"
@@ -16,14 +15,11 @@ namespace carousel::app {
 /// Simulates the rays of `job`, and all that the configuration asks for besides: the verification of the hits, the
 /// search for the bottleneck, the run without faults, the run with all effects. An interrupted part marks the report as
 /// incomplete. `trace`, if not null, gets the events of the run and is written as soon as they are there; `memory`, if
-/// not null, gets the requests of the run to the simulated memory; `heat`, if not null, the cost of each pixel, if that
-/// is known. Shows its progress on a terminal unless `quiet`. Throws ConfigError and FileError.
+/// not null, gets the requests of the run to the simulated memory; `heat`, one a pixel if not empty, the cost of
+/// the pixels. Shows its progress on a terminal unless `quiet`. Throws ConfigError and FileError.
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& prepared, RenderJob& job,
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace = nullptr,
-                        ringbus::MemoryLog* memory = nullptr, std::vector<ringbus::PixelCost>* heat = nullptr);
-
-/// Why the cost of the pixels of such a run is not known, in words that follow "this run"; empty if it is.
-std::string no_heat_because(const Prepared& prepared);
+                        ringbus::MemoryLog* memory = nullptr, std::span<ringbus::PixelCost> heat = {});
 
 /// Runs a workload without rays: synthetic traffic on the network alone, or requests to the memory alone. Throws
 /// ConfigError and FileError.

@@ -121,6 +121,20 @@ std::string trace_text(const TraceArguments& trace) {
   return fmt::format("window '{}', every {}, at most {} events", trace.window, trace.every, trace.events);
 }
 
+/// Why the cost of the pixels of such a run is not known, in words that follow "this run"; empty if it is.
+std::string no_heat_because(const Prepared& p) {
+  const Config& config = p.config();
+  if (config.engine.kind != EngineKind::kCycle) return "is of the native engine; expected engine.kind: cycle";
+  if (config.workload.kind != WorkloadConfig::Kind::kRays) return "makes no picture; expected workload: rays";
+  if (config.bundles.size > 0) return "has bundles, whose rays have no packets of their own; expected bundles.size: 0";
+  if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
+    return "begins rays anew when a resource stops; expected another faults.resource.kind";
+  if (config.rays.placement == Placement::kFirstTaker || config.rays.placement == Placement::kAddressed)
+    return fmt::format("has rays.placement: {}, by which resources give slots away; expected balanced or round_robin",
+                       enum_name(config.rays.placement));
+  return "";
+}
+
 /// The maps show what only some runs know.
 void require_heat(const RunArguments& arguments, const Prepared& p) {
   if (arguments.heat.empty()) return;
@@ -224,9 +238,10 @@ int run_command(const RunArguments& arguments) {
     trace.emplace(arguments.trace, p.config().engine.kind == EngineKind::kNative, outputs ? outputs->trace() : nullptr);
   ringbus::MemoryLog memory;
   std::vector<ringbus::PixelCost> heat;
+  if (!arguments.heat.empty()) heat.resize(static_cast<std::size_t>(p.config().image.width * p.config().image.height));
   const bool quiet = arguments.quiet || (ranks && ranks->rank() != 0);
   report::Report report = run_rays(arguments, p, job, interrupt, quiet, trace ? &*trace : nullptr,
-                                   arguments.dump_memory.empty() ? nullptr : &memory, &heat);
+                                   arguments.dump_memory.empty() ? nullptr : &memory, heat);
   if (ranks && ranks->rank() != 0) {
     ranks->leave();
     return report.incomplete ? interrupt.status() : kDone;

@@ -107,8 +107,7 @@ void describe(V& v, const Report& r) {
   v.section("ray_time", r.ray_time,
             "where the cycles of all rays go (cycle); absent of an incomplete run, with bundles, and with "
             "faults.resource.kind: stop");
-  v.section("heat", r.heat,
-            "cost of the picture's pixels, likewise; absent also with rays.placement: first_taker or addressed");
+  v.section("heat", r.heat, "cost of the picture's pixels, of a run with --heat (cycle)");
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");
   v.section(
       "sampled", r.sampled,

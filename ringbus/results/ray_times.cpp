@@ -6,9 +6,13 @@ namespace carousel::ringbus {
 
 void ResourceTimes::begin_visit(const PacketHistory& history) {
   visited_ = &history;
-  whole_.fill(0);
-  history.since(history.begun(), resource_,
-                [&](RayStage stage, Cycle cycles) { whole_[static_cast<std::size_t>(stage)] += cycles; });
+  for (const std::uint8_t stage : stages_) whole_[stage] = 0;
+  stages_.clear();
+  history.since(history.begun(), resource_, [&](RayStage stage, Cycle cycles) {
+    const auto i = static_cast<std::uint8_t>(stage);
+    if (whole_[i] == 0) stages_.push_back(i);
+    whole_[i] += cycles;
+  });
 }
 
 void ResourceTimes::begin_heard_visit(const PacketHistory& history, Cycle since, Cycle begun, Cycle now) {
@@ -34,7 +38,7 @@ Cycle ResourceTimes::tested(std::uint32_t slot, const RayTag& tag, std::uint32_t
   const std::uint64_t before = row[kInTest];
   if (from <= issued) {
     add(RayStage::kCollection, issued - from);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] += whole_[i];
+    for (const std::uint8_t i : stages_) row[i] += whole_[i];
   } else {
     visited_->since(from, resource_, add);
   }

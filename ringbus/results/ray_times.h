@@ -116,7 +116,10 @@ class ResourceTimes {
   RayTimeTable table_;
   const PacketHistory* visited_ = nullptr;  // of the packet of the present visit
   PacketHistory heard_;                     // scratch
-  RayTimeTable::Row whole_{};               // its history, for rays that were tested last before it was issued
+  // Its history, for rays that were tested last before it was issued: its cycles by stage, and the stages that have
+  // any.
+  RayTimeTable::Row whole_{};
+  std::vector<std::uint8_t> stages_;
 };
 
 /// The ledger of all rays' time: a part for each resource, one for shading, and the histories of all packets.

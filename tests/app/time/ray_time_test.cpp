@@ -86,7 +86,6 @@ TEST_F(RayTime, IsTheSameOnAnyNumberOfThreads) {
     const Json one = report(kMachine, {shape, "engine.threads=1"}),
                more = report(kMachine, {shape, "engine.threads=3"});
     EXPECT_EQ(one["ray_time"], more["ray_time"]) << shape;
-    EXPECT_EQ(one["heat"], more["heat"]) << shape;
   }
 }
 
@@ -163,7 +162,10 @@ TEST_F(RayTime, OfThePixelsIsThatOfTheRays) {
     EXPECT_EQ(cycles, whole["ray_time"]["cycles"]);
     EXPECT_EQ(cycles - waiting, whole["ray_time"]["test"]);
     EXPECT_GT(tests, rays);
-    EXPECT_EQ(whole["heat"]["slowest"][0]["cycles"], most);
+    EXPECT_FALSE(whole.contains("heat"));
+    const Json heat = Json::parse(program_.read("maps/report.json"))["heat"];
+    EXPECT_EQ(heat["slowest"].size(), 10u);
+    EXPECT_EQ(heat["slowest"][0]["cycles"], most);
     for (const char* name : {"cycles", "tests", "hops", "waiting"})
       EXPECT_TRUE(std::filesystem::exists(program_.folder() / fmt::format("maps/heat_{}.png", name)));
   }
