@@ -36,8 +36,10 @@ RoutedNode::RoutedNode(ResourceId id, const Topology& topology, const TrafficNod
   const ChannelPlan& plan = topology.channels();
   std::size_t most = 1, queues = 0;
   for (const std::uint32_t link : topology.ports(id).in) {
-    entries_.push_back({.first = queues, .queues = plan.channels[link]});
+    entries_.push_back({.first = queues, .queues = plan.channels[link], .claims = ports.claims[entries_.size()]});
     queues += plan.channels[link];
+    if (const auto credit = static_cast<Cycle>(topology.wires()[link].credit_cycles); credit > 0)
+      source_.credit_cycles = credit + 1 + settings.inject_cycles;
   }
   std::size_t channels = 0;
   for (const std::uint32_t link : topology.ports(id).out) {
@@ -50,11 +52,14 @@ RoutedNode::RoutedNode(ResourceId id, const Topology& topology, const TrafficNod
     most = std::max<std::size_t>(most, plan.channels[link]);
   }
   source_.queues.resize(most);
-  entries_.push_back({.first = queues, .queues = most});
+  source_.returns.resize(most);
+  const Cycle ahead = std::min(claim_cycles_, settings_.inject_cycles);
+  entries_.push_back({.first = queues, .queues = most, .claims = settings_.clock.equal() ? ahead : 0});
+  over_.resize(queues + most);
   claimed_.resize(queues + most);
-  channels_.resize(queues + most, kNone);
-  taken_.resize(channels);
-  exits_.push_back({.cycles = settings.pieces > 1 ? std::uint16_t{1} : settings.flits});
+  claims_ = ChannelClaims(queues + most, channels + most);
+  exits_.push_back(
+      {.first = channels, .channels = most, .cycles = settings.pieces > 1 ? std::uint16_t{1} : settings.flits});
   asking_.resize(entries_.size() * exits_.size());
   offers_.resize(exits_.size());
   create();
@@ -70,36 +75,52 @@ void RoutedNode::create() {
   const Cycle created = source_.packets->created();
   const ResourceId to = source_.packets->destination();
   const std::uint16_t hops = topology_.route(id_, to, 0).hops;
-  source_.next.token = {created, static_cast<std::uint16_t>(id_.value), 0, settings_.flits,
-                        hops,    static_cast<std::uint16_t>(to.value),  0, 0};
+  source_.next.token = {
+      created, static_cast<std::uint16_t>(id_.value), 0, settings_.flits,
+      hops,    static_cast<std::uint16_t>(to.value),  0, static_cast<std::uint16_t>(settings_.pieces - 1)};
   const Cycle there = settings_.clock.enter(created + settings_.inject_cycles);
-  source_.next.ready = there;
-  if (before != kNever) source_.next.ready = std::max(there, before + settings_.flits);
+  source_.next.ready = there - entries_.back().claims;
+  if (before != kNever) {
+    const Cycle apart = settings_.pieces > 1 ? 1 : settings_.flits;  // from its last flit, or from its only piece
+    source_.next.ready = std::max(source_.next.ready, before + apart);
+  }
   if (created < window_.begin) return;
   ++offered_.packets;
   offered_.routers += hops + 1u;
   offered_.travel += alone(to, there) - created - settings_.inject_cycles;
 }
 
-/// Puts the packets that have left the source by `now` into its queues, as far as these have places.
+/// Puts what has left the source by `now` into its queues: a packet into the next queue that has a place for its head,
+/// and its flits behind one another.
 void RoutedNode::fill_source(Cycle now) {
   const std::size_t places = std::size_t{settings_.link_depth} * settings_.pieces;
-  const auto full = [&](std::size_t queue) { return source_.queues[queue].size() + settings_.pieces > places; };
+  const auto full = [&](std::size_t queue) {
+    Fifo<Cycle>& returns = source_.returns[queue];
+    while (!returns.empty() && returns.front() <= now) returns.pop_front();
+    return source_.queues[queue].size() + returns.size() >= places;
+  };
   while (!source_.blocked && source_.next.ready <= now) {
     std::size_t queue = source_.last, tried = 0;
-    do queue = queue + 1 < source_.queues.size() ? queue + 1 : 0;
-    while (full(queue) && ++tried < source_.queues.size());
-    if (full(queue)) {
-      source_.blocked = true;  // until something has left
+    const std::size_t choice = is_head(source_.next.token) ? source_.queues.size() : 1;
+    if (choice > 1) queue = next_source_queue(queue);
+    while (full(queue) && ++tried < choice) queue = next_source_queue(queue);
+    if (tried == choice) {
+      Cycle opens = kNever;
+      for (std::size_t i = 0; i < source_.returns.size(); ++i)
+        if ((choice > 1 || i == source_.last) && !source_.returns[i].empty())
+          opens = std::min(opens, source_.returns[i].front());
+      source_.blocked = opens == kNever;  // until something has left
+      if (!source_.blocked) source_.next.ready = opens;
       return;
     }
-    for (std::uint16_t i = 0; i < settings_.pieces; ++i) {
-      Waiting& piece = source_.next;
-      piece.token.behind = static_cast<std::uint16_t>(settings_.pieces - 1 - i);
-      source_.queues[queue].push_back({piece.token, piece.ready + i});
-    }
+    source_.queues[queue].push_back(source_.next);
     source_.last = queue;
-    create();
+    if (source_.next.token.behind == 0) {
+      create();
+      continue;
+    }
+    --source_.next.token.behind;
+    ++source_.next.ready;
   }
 }
 
@@ -139,29 +160,34 @@ void RoutedNode::over_link(const Topology::Wire& wire, bool through, std::vector
 // ---- time
 
 Cycle RoutedNode::ready(std::size_t queue) const {
-  Cycle there = kNever;
-  if (!of_source(queue))
-    there = in_[queue].next();
-  else if (const Fifo<Waiting>& waiting = source_.queues[queue - in_.size()]; !waiting.empty())
-    there = waiting.front().ready;
-  return there == kNever ? kNever : std::max(there, claimed_[queue]);
+  if (!of_source(queue)) return in_[queue].next();
+  const Fifo<Waiting>& waiting = source_.queues[queue - in_.size()];
+  return waiting.empty() ? kNever : waiting.front().ready;
+}
+
+/// When the first flit of a queue with one may claim a channel or leave, as far as the queue goes.
+Cycle RoutedNode::waits_until(std::size_t queue, const Entry& entry) const {
+  const Cycle there = ready(queue);
+  if (there == kNever) return kNever;
+  if (must_claim(queue)) return std::max(there, over_[queue]);
+  return std::max(is_head(first(queue)) ? there + entry.claims : there, claimed_[queue]);
 }
 
 Cycle RoutedNode::next() const {
   Cycle first = source_.blocked ? kNever : source_.next.ready;
   for (const Entry& entry : entries_)
     for (std::size_t queue = entry.first; queue < entry.first + entry.queues; ++queue) {
-      Cycle at = ready(queue);
+      Cycle at = waits_until(queue, entry);
       if (at == kNever) continue;
       if (at <= now_) {  // it waits
         const TrafficToken& token = this->first(queue);
         const Exit& exit = exits_[exit_of(token)];
-        Cycle opens = sink_.opens();
-        if (channels_[queue] != kNone)
-          opens = out_[channels_[queue]].opens(1);
-        else if (&exit != &exits_.back())
-          opens = channel_opens(exit, class_of(token, of_source(queue), exit));
-        at = std::max({entry.free, exit.free, opens, now_ + 1});
+        if (must_claim(queue)) {
+          const auto [begin, end] = channels_for(token, of_source(queue), exit);
+          at = claims_.any_free(begin, end) ? now_ + 1 : kNever;  // a packet that leaves will free one
+        } else {
+          at = std::max({entry.free, exit.free, channel_opens(queue, exit), now_ + 1});
+        }
       }
       first = std::min(first, at);
     }
@@ -203,6 +229,7 @@ void RoutedNode::step(Cycle now) {
   if (marks_passed_ < 2) pass_marks(now);
   now_ = now;
   fill_source(now);
+  if (claim_cycles_ > 0) claim(now);
   ask(now);
   for (std::size_t exit = 0; exit < exits_.size(); ++exit) offers_[exit] = offer(exit);
   for (std::size_t entry = 0; entry < entries_.size(); ++entry)
@@ -216,23 +243,51 @@ void RoutedNode::step(Cycle now) {
 
 // ---- packets
 
+std::pair<std::size_t, std::size_t> RoutedNode::channels_for(const TrafficToken& token, bool own,
+                                                             const Exit& exit) const {
+  if (is_sink(exit)) return {exit.first, exit.first + exit.channels};
+  const auto [begin, end] = topology_.channels().range(exit.link, class_of(token, own, exit));
+  return {exit.first + begin, exit.first + end};
+}
+
+/// Packets that are the first of their queues claim channels.
+void RoutedNode::claim(Cycle now) {
+  for (const Entry& entry : entries_)
+    for (std::size_t queue = entry.first; queue < entry.first + entry.queues; ++queue) {
+      if (!must_claim(queue) || waits_until(queue, entry) > now) continue;
+      const TrafficToken& token = first(queue);
+      const auto [begin, end] = channels_for(token, of_source(queue), exits_[exit_of(token)]);
+      if (claims_.any_free(begin, end)) claims_.ask(queue, begin, end);
+    }
+  claims_.settle([&](std::size_t queue) {
+    const auto entry = std::ranges::find_if(entries_, [&](const Entry& one) { return queue < one.first + one.queues; });
+    claimed_[queue] = now + (over_[queue] > ready(queue) ? claim_cycles_ : entry->claims);
+  });
+}
+
 /// The channel with a place that comes after the one that was taken last.
-std::optional<std::size_t> RoutedNode::open_channel(const Exit& exit, std::uint32_t wanted, Cycle now) {
-  const auto [begin, end] = topology_.channels().range(exit.link, wanted);
+std::optional<std::size_t> RoutedNode::open_channel(std::size_t queue, const Exit& exit, Cycle now) {
+  const auto [begin, end] = channels_for(first(queue), of_source(queue), exit);
   const std::size_t many = end - begin;
   for (std::size_t i = 1; i <= many; ++i) {
-    const std::size_t channel = exit.first + begin + (exit.channel + i) % many;
-    if (!taken_[channel] && out_[channel].open(now, 1)) return channel;
+    const std::size_t channel = begin + (exit.channel + i) % many;
+    if (!claims_.taken(channel) && has_place(channel, now)) return channel;
   }
   return std::nullopt;
 }
 
-Cycle RoutedNode::channel_opens(const Exit& exit, std::uint32_t wanted) const {
-  const auto [begin, end] = topology_.channels().range(exit.link, wanted);
-  Cycle first = kNever;
-  for (std::size_t channel = exit.first + begin; channel < exit.first + end; ++channel)
-    if (!taken_[channel]) first = std::min(first, out_[channel].opens(1));
-  return first;
+/// When the first flit of a queue may take its channel, as far as channels and places go.
+Cycle RoutedNode::channel_opens(std::size_t queue, const Exit& exit) const {
+  if (is_sink(exit)) {
+    if (claims_.of(queue) != kNone || claims_.any_free(exit.first, exit.first + exit.channels)) return sink_.opens();
+    return kNever;
+  }
+  if (const std::size_t own = claims_.of(queue); own != kNone) return out_[own].opens(1);
+  const auto [begin, end] = channels_for(first(queue), of_source(queue), exit);
+  Cycle opens = kNever;
+  for (std::size_t channel = begin; channel < end; ++channel)
+    if (!claims_.taken(channel)) opens = std::min(opens, out_[channel].opens(1));
+  return opens;
 }
 
 /// When the last flit of what begins to leave a queue for the sink is there. A packet of the source has its head here,
@@ -244,11 +299,9 @@ Cycle RoutedNode::tail(std::size_t queue, Cycle now) const {
 /// The first packet of the queue may leave by the exit that it wants.
 bool RoutedNode::may_leave(std::size_t queue, std::size_t number, Cycle now) {
   const Exit& exit = exits_[number];
-  if (exit.free > now) return false;
-  if (channels_[queue] != kNone) return out_[channels_[queue]].open(now, 1);
-  if (&exit != &exits_.back())
-    return open_channel(exit, class_of(first(queue), of_source(queue), exit), now).has_value();
-  return sink_.open(tail(queue, now));
+  if (exit.free > now || (is_sink(exit) && !sink_.open(tail(queue, now)))) return false;
+  if (const std::size_t own = claims_.of(queue); own != kNone) return has_place(own, now);
+  return open_channel(queue, exit, now).has_value();
 }
 
 /// Fills in which queues ask for which exits.
@@ -259,7 +312,7 @@ void RoutedNode::ask(Cycle now) {
     if (entry.free > now) continue;
     for (std::size_t i = 0; i < entry.queues; ++i) {
       const std::size_t queue = entry.first + (entry.turn + i) % entry.queues;
-      if (ready(queue) > now) continue;
+      if (waits_until(queue, entry) > now || must_claim(queue)) continue;
       const std::size_t exit = exit_of(first(queue));
       std::size_t& asking = asking_[from * exits_.size() + exit];
       if (asking == kNone && may_leave(queue, exit, now)) asking = queue;
@@ -284,8 +337,14 @@ void RoutedNode::move(std::size_t from, std::size_t to, Cycle now) {
   entry.turn = (queue - entry.first + 1) % entry.queues;
   entry.next_exit = to + 1 < exits_.size() ? to + 1 : 0;
   exit.next_entry = from + 1 < entries_.size() ? from + 1 : 0;
-  const bool head = is_head(first(queue)), last = first(queue).behind == 0;
-  if (&exit == &exits_.back()) {
+  const bool last = first(queue).behind == 0;
+  if (claims_.of(queue) == kNone) {
+    const std::size_t channel = *open_channel(queue, exit, now);
+    claims_.take(queue, channel);
+    exit.channel = channel - channels_for(first(queue), own, exit).first;
+  }
+  const std::size_t channel = claims_.of(queue);
+  if (is_sink(exit)) {
     const Cycle end = tail(queue, now);
     const TrafficToken token = take(queue, now);
     if (last) sink_.deliver(token, end);
@@ -293,20 +352,16 @@ void RoutedNode::move(std::size_t from, std::size_t to, Cycle now) {
     entry.free = end + 1;
   } else {
     const std::uint32_t wanted = class_of(first(queue), own, exit);
-    if (head) {
-      channels_[queue] = *open_channel(exit, wanted, now);
-      exit.channel = channels_[queue] - exit.first - topology_.channels().range(exit.link, wanted).first;
-    }
-    const std::size_t channel = channels_[queue];
-    taken_[channel] = !last;
-    if (last) channels_[queue] = kNone;
     TrafficToken token = take(queue, now);
     token.channel = static_cast<std::uint16_t>(wanted);
     token.link_cycles = exit.cycles;
     out_[channel].launch(token, now, topology_.exit(id_, ResourceId(token.stop)).through);
     exit.free = entry.free = out_[channel].free_at();
   }
-  claimed_[queue] = entry.free + (last ? claim_cycles_ : 0);
+  claimed_[queue] = entry.free;
+  if (!last) return;
+  claims_.release(queue);
+  over_[queue] = entry.free;
 }
 
 TrafficToken RoutedNode::take(std::size_t queue, Cycle now) {
@@ -314,7 +369,10 @@ TrafficToken RoutedNode::take(std::size_t queue, Cycle now) {
   Fifo<Waiting>& waiting = source_.queues[queue - in_.size()];
   const TrafficToken token = waiting.front().token;
   waiting.pop_front();
-  if (std::exchange(source_.blocked, false)) source_.next.ready = std::max(source_.next.ready, now + 1);
+  const Cycle again =
+      now + std::max<Cycle>(1, source_.credit_cycles - std::min(source_.credit_cycles, entries_.back().claims));
+  if (source_.credit_cycles > 0) source_.returns[queue - in_.size()].push_back(again);
+  if (std::exchange(source_.blocked, false)) source_.next.ready = std::max(source_.next.ready, again);
   return token;
 }
 

@@ -105,6 +105,13 @@ class TrafficRun {
 
   Cycle link_latency() const { return static_cast<Cycle>(config_.topology.link.latency_cycles); }
 
+  /// Of the cycles of a link and of the node before it, those in which the node behind it lets a head claim a channel.
+  /// A link with another clock than its nodes has none, since its cycles are not those of the claim.
+  Cycle claims_on(const Topology::Wire& wire) const {
+    if (wire.mhz != topology_.mhz(wire.from) || wire.mhz != topology_.mhz(wire.to)) return 0;
+    return std::min<Cycle>(topology_.claim_cycles(wire.to), static_cast<Cycle>(wire.node_cycles));
+  }
+
   /// The nodes of a graph: resources, which have sources, and routers.
   void add_routed(const TrafficNodeSettings& settings) {
     const auto resources = static_cast<std::uint32_t>(topology_.resources());
@@ -124,6 +131,7 @@ class TrafficRun {
         if (crosses)
           far = std::make_shared<const FarClock>(
               FarClock{clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.credit_cycles)});
+        ports.claims.push_back(claims_on(wire));
         for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
           ports.in.push_back(
               {wires_[w].get(), static_cast<Cycle>(wire.latency_cycles + (crosses ? 0 : wire.credit_cycles)), far});
@@ -131,8 +139,9 @@ class TrafficRun {
       for (const std::uint32_t i : topology_.ports(ResourceId(n)).out) {
         const Topology::Wire& wire = topology_.wires()[i];
         const bool crosses = wire.mhz != own;
+        const Cycle node_cycles = crosses ? 0 : static_cast<Cycle>(wire.node_cycles) - claims_on(wire);
         for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w) {
-          ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles + (crosses ? 0 : wire.node_cycles)),
+          ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles) + node_cycles,
                                  static_cast<std::uint32_t>(wire.depth) * settings.pieces, 1);
           if (crosses) ports.out.back().cross(clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.node_cycles));
         }

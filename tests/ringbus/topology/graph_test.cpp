@@ -49,7 +49,8 @@ std::vector<PublishedGraph> published() {
   return graphs;
 }
 
-/// BookSim2's routers. Without speculation a packet claims a channel a cycle before it asks for its link.
+/// BookSim2's routers. Without speculation a packet claims a channel a cycle before its head asks for the link; the
+/// flits behind it ask at once.
 struct Pipeline {
   std::int64_t node_cycles = 3, claim_cycles = 1, channels = 8, depth = 8;
 };
@@ -145,6 +146,9 @@ TEST(Graph, GetsAsMuchThroughAsBookSim2) {
         LoadRow{"tree15", 1, 0.2411, 0.228587, 0}, LoadRow{"mesh4x4", 1, 0.5714, 0.486146, 0},
         LoadRow{"random07", 1, 0.44, 0.376097, 0}})
     expect_load(row, kSpeculative, 0.01);
+  // With one channel a packet has the way to the sink to itself, too: two that share it would both be late.
+  const Pipeline of_four{kSpeculative.node_cycles, kSpeculative.claim_cycles, 1, 4};  // packets
+  expect_load({"line3", 4, 0.2, 0.204711, 11.4602}, of_four, 0.01);
 }
 
 // Eight virtual channels of 8 flits.
@@ -155,9 +159,10 @@ TEST(Graph, GetsAsMuchThroughVirtualChannelsAsBookSim2) {
         LoadRow{"line3", 1, 1.0, 0.909089, 0}, LoadRow{"tree15", 1, 0.2411, 0.23212, 0}})
     expect_load(row, {}, 0.01);
   const Pipeline of_four{.depth = 2};  // packets
+  // The flits behind a head have nothing to claim: if each waited as long as the head, these would be 0.7 to 3.7 % off.
   for (const LoadRow& row : {LoadRow{"line3", 4, 0.2, 0.204711, 13.7419}, LoadRow{"random03", 4, 0.2, 0.20257, 32.196},
                              LoadRow{"two_rings_link", 4, 0.5, 0.30458, 0}})
-    expect_load(row, of_four, 0.03);
+    expect_load(row, of_four, 0.01);
 }
 
 // BookSim2 with eight channels comes through the first load of each graph and stops under the second.
