@@ -9,6 +9,7 @@
 #include "core/config/fields/rays.h"
 #include "core/config/fields/workload.h"
 #include "core/plugin/plugin.h"
+#include "core/types/prefetcher_offer.h"
 #include "core/types/workload_offer.h"
 #include "ringbus/native/links/queue_link.h"
 #include "ringbus/queues/queue_design.h"
@@ -52,6 +53,12 @@ inline void bring_placement(PluginParts& parts, std::string name, const Placemen
 inline void bring_workload(PluginParts& parts, std::string name, WorkloadOffer offer) {
   const bool any = static_cast<bool>(offer.make);
   parts.add<OwnWorkload>(std::move(name), any ? std::make_shared<WorkloadOffer>(std::move(offer)) : nullptr);
+}
+
+/// A prefetcher: a part with a clock of its own. Both functions of the offer are needed.
+inline void bring_prefetcher(PluginParts& parts, std::string name, PrefetcherOffer offer) {
+  const bool any = offer.make && offer.table_bytes;
+  parts.add<PrefetchRule>(std::move(name), any ? std::make_shared<PrefetcherOffer>(std::move(offer)) : nullptr);
 }
 
 }  // namespace carousel::ringbus

@@ -134,16 +134,19 @@ class Install(unittest.TestCase):
         run("cmake", "--build", build)
         self.assertIn("2000 of 2000 beams met a surface", run(build / "own_program"))
         # The installed program knows what the plugins bring.
-        plugins = ", ".join(str(build / f"libown_{part}.so") for part in ("queue", "policy", "placement", "workload"))
+        parts = ("queue", "policy", "placement", "workload", "prefetcher")
+        plugins = ", ".join(str(build / f"libown_{part}.so") for part in parts)
         machine = self.prefix / "share/doc/carousel-dev/examples/plugins.yaml"
         words = [self.program, "run", machine, "--json", "--set", f"engine.plugins=[{plugins}]", "--out"]
         report = json.loads(run(*words, build / "native"))
         self.assertEqual([plugin["brings"] for plugin in report["plugins"]],
-                         [["queue fast_forward"], ["policy broad_first"], ["placement octants"], ["workload scanner"]])
+                         [["queue fast_forward"], ["policy broad_first"], ["placement octants"], ["workload scanner"],
+                          ["prefetcher pairs"]])
         self.assertEqual(report["links"][0]["queue"], "fast_forward")
         self.assertEqual((report["rays"]["by_kind"]["camera"], report["rays"]["lost"]), (2000, 0))
         cycles = json.loads(run(*words, build / "cycle", "--set", "engine.kind=cycle", "--set",
-                                "topology.link.queue=spsc_ring"))
+                                "topology.link.queue=spsc_ring", "--set", "prefetcher={lines: 2, rule: pairs}"))
+        self.assertGreater(cycles["prefetcher"]["hints"], 0)
         self.assertEqual(report["digest"], cycles["digest"])
         run(self.program, "stress", "--plugin", build / "libown_queue.so", "--queue", "fast_forward", "--pattern",
             "stream", "--messages", "20000", "--seconds", "1", "--out", build / "stress")

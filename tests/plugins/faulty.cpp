@@ -35,6 +35,25 @@ MadeWorkload make(const WorkloadSetup&) {
   return {std::make_unique<Liar>(), 1};
 }
 
+/// Breaks the contract of a prefetcher in the way that the environment names.
+class Breaker final : public Prefetcher {
+ public:
+  void hear(std::uint64_t line, std::uint32_t, std::uint64_t now, LinesAhead& ahead) override {
+    if (fault() == "greedy")
+      for (std::uint64_t i = 0; i < 5; ++i) ahead.ask(line + i);
+    if (fault() == "nowhere") ahead.ask(~std::uint64_t{0});
+    heard_ = now;
+  }
+  std::uint64_t next() const override { return fault() == "late" && heard_ > 0 ? heard_ - 1 : kNever; }
+
+ private:
+  std::uint64_t heard_ = 0;
+};
+
+std::unique_ptr<Prefetcher> make_breaker(const PrefetcherSetup&) {
+  return fault() == "no prefetcher" ? nullptr : std::make_unique<Breaker>();
+}
+
 void bring(PluginParts& parts) {
   const ringbus::IssuePolicy policy{.policy = {}, .bucket = any_bucket};
   if (fault() == "nothing") return;
@@ -46,6 +65,8 @@ void bring(PluginParts& parts) {
   if (fault() == "another's") ringbus::bring_policy(parts, "broad_first", policy);
   ringbus::bring_policy(parts, "lazy", policy);
   ringbus::bring_placement(parts, "beyond", {.choose = beyond});
+  ringbus::bring_prefetcher(parts, "breaker",
+                            {.make = make_breaker, .table_bytes = [](const PrefetcherSetup&) { return 64; }});
   ringbus::bring_workload(parts, "liar", {.options = {}, .make = make});
 }
 

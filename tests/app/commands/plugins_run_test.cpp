@@ -28,7 +28,7 @@ std::string plugin(const std::string& name) {
 }
 std::string all_plugins() {
   return "engine.plugins=[" + plugin("own_queue") + ", " + plugin("own_policy") + ", " + plugin("own_placement") +
-         ", " + plugin("own_workload") + "]";
+         ", " + plugin("own_workload") + ", " + plugin("own_prefetcher") + "]";
 }
 
 class Plugins : public testing::Test {
@@ -136,6 +136,54 @@ TEST_F(Plugins, AWorkloadTakesItsOptions) {
   EXPECT_THAT(refusal({all_plugins(), workload, "sampling.fraction=0.5"}), HasSubstr("sampling.fraction: "));
 }
 
+// A part with a clock: its look-ups take cycles, its requests go over the machine's wires, and its table costs area.
+TEST_F(Plugins, APrefetcherHasAClockAWireAndAnArea) {
+  const std::vector<std::string> machine{"scene={builtin: terrain, triangles: 2000}",
+                                         "engine.kind=cycle",
+                                         "engine.what_if=false",
+                                         "memory.shape_buffer_kib=1",
+                                         "memory.l2_kib=4",
+                                         "energy.profile=n45",
+                                         all_plugins()};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), machine.begin(), machine.end());
+    return report(more);
+  };
+  const Json without = with({}), own = with({"prefetcher={lines: 2, rule: pairs}", "engine.threads=1"});
+  EXPECT_EQ(own["digest"], without["digest"]);
+  EXPECT_NE(own["engine"]["cycles"], without["engine"]["cycles"]);
+  EXPECT_EQ(own["config"]["prefetcher"]["rule"], "pairs");
+  const Json& counts = own["prefetcher"];
+  EXPECT_GT(counts["lines"], 0);
+  EXPECT_GT(counts["met"], 0);
+  EXPECT_LE(counts["met"], counts["lines"]);
+  EXPECT_EQ(counts["streams"], 0);
+  // 64 entries of 16 bytes for each of four streams at the one L2; six words a hint.
+  EXPECT_NEAR(own["area"]["parts"]["prefetcher"]["mm2"].get<double>(), 4 * 0.00456, 1e-6);  // KiB by n45
+  EXPECT_EQ(own["energy"]["parts"]["prefetcher"]["events"].get<double>(), 6 * counts["hints"].get<double>());
+  // The same cycles on any number of threads, and others than the program's own rule.
+  EXPECT_EQ(with({"prefetcher={lines: 2, rule: pairs}", "engine.threads=3"})["engine"]["cycles"],
+            own["engine"]["cycles"]);
+  EXPECT_NE(with({"prefetcher={lines: 2}"})["prefetcher"], counts);
+  EXPECT_THAT(refusal({all_plugins(), "engine.kind=cycle", "prefetcher={lines: 2, rule: pears}"}),
+              HasSubstr("prefetcher.rule: expected one of strides, pairs, found 'pears'; did you mean 'pairs'?"));
+}
+
+TEST_F(Plugins, APrefetcherThatBreaksItsContractEndsTheRun) {
+  const auto message = [&](const char* fault) {
+    setenv("CAROUSEL_TEST_FAULT", fault, 1);
+    const Outcome outcome = run({"engine.plugins=[" + plugin("faulty") + "]", "engine.kind=cycle",
+                                 "engine.what_if=false", "prefetcher={lines: 4, rule: breaker}"});
+    unsetenv("CAROUSEL_TEST_FAULT");
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    return outcome.err;
+  };
+  EXPECT_THAT(message("greedy"), HasSubstr("prefetcher.rule: breaker asks for more than prefetcher.lines, 4, at once"));
+  EXPECT_THAT(message("nowhere"), HasSubstr("prefetcher.rule: breaker asks for line 18446744073709551615, which"));
+  EXPECT_THAT(message("late"), HasSubstr("prefetcher.rule: breaker wants cycle "));
+  EXPECT_THAT(message("no prefetcher"), HasSubstr("prefetcher.rule: breaker makes none"));
+}
+
 TEST_F(Plugins, NamesAreKnownToMessagesAndSchema) {
   EXPECT_THAT(refusal({all_plugins(), "collections.policy=broad_frist"}),
               HasSubstr("found 'broad_frist'; did you mean 'broad_first'?"));
@@ -147,14 +195,16 @@ TEST_F(Plugins, NamesAreKnownToMessagesAndSchema) {
   EXPECT_THAT(refusal({all_plugins(), "rays.queue=fast_forward", "engine.threads=4", "shading.queue=fast_forward"}),
               HasSubstr("fast_forward is made for one producer at a time and here are several"));
 
-  const Outcome schema = program_.run({"schema", "config", "--plugin", plugin("own_queue"), "--plugin",
-                                       plugin("own_workload"), "--plugin", plugin("own_placement")});
+  const Outcome schema =
+      program_.run({"schema", "config", "--plugin", plugin("own_queue"), "--plugin", plugin("own_workload"), "--plugin",
+                    plugin("own_placement"), "--plugin", plugin("own_prefetcher")});
   ASSERT_EQ(schema.status, 0) << schema.err;
   const Json json = Json::parse(schema.out)["properties"];
   const Json& queues = json["topology"]["properties"]["link"]["properties"]["queue"]["enum"];
   EXPECT_EQ(queues.back(), "fast_forward");
   EXPECT_EQ(json["shading"]["properties"]["queue"]["enum"], queues);
   EXPECT_EQ(json["rays"]["properties"]["placement"]["enum"].back(), "octants");
+  EXPECT_EQ(json["prefetcher"]["properties"]["rule"]["enum"], Json::array({"strides", "pairs"}));
   EXPECT_THAT(json["workload"].dump(), HasSubstr(R"("beams":{"type":"number","minimum":1.0,"maximum":1000000.0)"));
   EXPECT_EQ(program_.run({"schema", "config", "--plugin", "nowhere.so"}).status, 2);
 }

@@ -345,9 +345,10 @@ inline std::vector<std::string> keys_without_a_row() {
       "image.files",            // it chooses files, which no report tells of; modules_run_test.cpp has it
       "vary",                   // it is for sweeps; `run` warns of it
       "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
-      "engine.plugins",         // these three take shared libraries; plugins_run_test.cpp has them
+      "engine.plugins",         // these four take shared libraries; plugins_run_test.cpp has them
       "workload.plugin",
       "workload.options",
+      "prefetcher.rule",
   };
 }
 

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/parts/attached_part.h"
 #include "ringbus/cycle/parts/stride_prefetcher/part.h"
+#include "ringbus/cycle/parts/stride_prefetcher/prefetcher_ports.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -19,16 +17,9 @@ namespace carousel::ringbus::cycle {
 /// line that follows its stream by the stream's stride makes the prefetcher ask its L2 for the next lines, each once.
 class StridePrefetcher final : public CountingAgent<StridePrefetcherCounts> {
  public:
-  struct Kinds {
-    MessageKind hints, requests;
-    Kinds(ChannelList& list, const LinkConfig& link);
-  };
-  StridePrefetcher(const StridePrefetcherKeys& keys, const Kinds& kinds, const PartSites& sites, const PartSite& site);
+  StridePrefetcher(const StridePrefetcherKeys& keys, PrefetcherPorts ports);
 
-  /// The ends of its channels at others.
-  AttachedPart<StridePrefetcherCounts> ends() const;
-
-  Cycle next() const override;
+  Cycle next() const override { return ports_.next(); }
   bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override { return ""; }
@@ -46,9 +37,7 @@ class StridePrefetcher final : public CountingAgent<StridePrefetcherCounts> {
   void ask(std::int64_t line, Cycle now);
 
   std::int64_t ahead_, reach_;
-  std::vector<std::unique_ptr<Channel<ShapeHint>>> hints_;  // by resource behind the L2
-  std::unique_ptr<Channel<FetchRequest>> requests_;
-  SideWire wire_;
+  PrefetcherPorts ports_;
   std::vector<Stream> streams_;
   std::size_t oldest_ = 0;  // the stream that is replaced next
   StridePrefetcherCounts counts_;
