@@ -19,7 +19,8 @@ namespace {
 
 using report::AreaPart;
 
-constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024;
+constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024, kEntryBytes = 12,
+                 kNodeBytes = 128;
 
 void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, const TestersConfig& testers) {
   for (const auto [kind, units] : testers.units) {
@@ -44,7 +45,39 @@ double place_bytes(const Config& c) {
   }
 }
 
+/// Gives the parts that all resources share the size for those of `c`, by the factor over those of `from`. False if a
+/// part would be out of its range.
+bool scale_shared_parts(Config& c, const Config& from) {
+  const std::int64_t n = c.topology.resources, was = from.topology.resources;
+  const auto scaled = [&](std::int64_t size) { return std::max<std::int64_t>(1, (2 * size * n + was) / (2 * was)); };
+  if (from.shading.workers) c.shading.workers = scaled(*from.shading.workers);
+  if (from.memory.shared_by >= was) {  // one L2
+    c.memory.shared_by = n;
+    c.memory.l2_kib = scaled(from.memory.l2_kib);
+    c.memory.l2_banks = scaled(from.memory.l2_banks);
+  }
+  return c.shading.workers.value_or(1) <= 256 && c.memory.l2_banks <= 64 && c.memory.l2_kib <= 1 << 20;
+}
+
+/// The stacks of a resource that traces its own rays; with warps also the data of the node that each lane tests.
+double stack_kib(const Config& c, std::int64_t resource) {
+  const OwnSections own = own_sections(c, resource);
+  const SimtConfig& simt = own.testers.simt;
+  if (simt.warp == 0) return static_cast<double>(own.rays.slots_per_resource) * kStackBytes / kKiB;
+  return register_kib(c, resource) + static_cast<double>(simt.warp * simt.warps) * kNodeBytes / kKiB;
+}
+
 }  // namespace
+
+/// Rays that are packed anew keep their stacks while they wait for a warp.
+double register_kib(const Config& c, std::int64_t resource) {
+  const OwnSections own = own_sections(c, resource);
+  const SimtConfig& simt = own.testers.simt;
+  const std::int64_t slots = own.rays.slots_per_resource;
+  const std::int64_t stacks =
+      simt.compaction == SimtConfig::Compaction::kRepack ? slots : std::min(simt.warp * simt.warps, slots);
+  return static_cast<double>(stacks * simt.stack_entries) * kEntryBytes / kKiB;
+}
 
 report::Area machine_area(const Config& c, const SceneFacts& scene) {
   report::Area out;
@@ -65,8 +98,9 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   if (topology.has_packets())
     store(AreaPart::kCollections,
           all([](const OwnSections& one) { return one.collections.capacity; }) * kIdBytes / kKiB);
-  else
-    store(AreaPart::kStacks, slots * kStackBytes / kKiB);
+  double stacks = 0;
+  for (std::int64_t r = 0; r < c.topology.resources && !topology.has_packets(); ++r) stacks += stack_kib(c, r);
+  store(AreaPart::kStacks, stacks);
   store(AreaPart::kShapeBuffers, all([](const OwnSections& one) { return one.memory.shape_buffer_kib; }));
   store(AreaPart::kL1, all([](const OwnSections& one) { return one.memory.l1_kib; }));
   out.link_mm = c.area.link_mm ? static_cast<double>(*c.area.link_mm) : std::sqrt(parts.mm2() / n);
@@ -125,12 +159,14 @@ void fit_area(LocatedConfig& located, const SceneFacts& scene) {
       refuse(fmt::format("expected a machine of at most {} mm2, found one of {:.4g}", *c.area.budget_mm2, area));
     return;
   }
+  const Config machine = c;
   const std::int64_t given = c.topology.resources;
   for (std::int64_t n = config::kMaxResources; n > 0; --n) {
     c.topology.resources = n;
+    if (c.area.fit == AreaConfig::Fit::kAll && !scale_shared_parts(c, machine)) continue;
     if (validate_config(c, located.positions, {.force = true}).empty() && machine_area(c, scene).mm2 <= budget) return;
   }
-  c.topology.resources = given;
+  c = machine;
   refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}",
                      *c.area.budget_mm2, given, machine_area(c, scene).mm2));
 }

@@ -10,6 +10,9 @@ namespace carousel::app {
 /// energy.profile.
 report::Area machine_area(const Config& config, const SceneFacts& scene);
 
+/// The stack registers of a resource with warps, in KiB: 12 bytes an entry.
+double register_kib(const Config& config, std::int64_t resource);
+
 /// Holds the machine to area.budget_mm2: gives it the largest number of resources whose machine is within the budget,
 /// or refuses it, as area.fit says. Throws a ConfigError where no number is.
 void fit_area(LocatedConfig& located, const SceneFacts& scene);

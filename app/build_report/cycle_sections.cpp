@@ -38,6 +38,12 @@ report::UnitCycles unit_cycles(const ringbus::cycle::BankUse& use, const ringbus
           .idle = in(TileState::kIdle)};
 }
 
+report::Warps warps(const ringbus::cycle::TileResult& tile) {
+  report::Warps out{tile.warp_lanes, *tile.warps, {}};
+  for (const LaneUse& use : tile.bounces) out.bounces.push_back({out.bounces.size(), use});
+  return out;
+}
+
 report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles, const Config& config,
                     const accel::Accel& accel) {
   report::Units out;
@@ -58,6 +64,7 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
   if (config.rays.reads_per_cycle > 0 || config.rays.banks > 0 || any_own(config.topology, bounds_reads))
     out.ray_reads = unit_cycles(tile.ray_reads, tile);
   out.distributor = tile.distributor;
+  if (tile.warps) out.warps = warps(tile);
   out.dispatch_busy = tile.dispatch.busy;
   out.dispatch_idle = cycles - tile.dispatch.busy;
   return out;

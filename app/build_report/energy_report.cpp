@@ -74,7 +74,12 @@ class Account {
     for (const report::Resource& resource : *r_.resources)
       if (resource.stack)
         access(EnergyPart::kStacks, static_cast<double>(resource.stack->pushed_bytes + resource.stack->popped_bytes),
-               rays_kib_);
+               resource.units && resource.units->warps ? register_kib(c_, static_cast<std::int64_t>(resource.resource))
+                                                       : rays_kib_);
+    for (const report::Resource& resource : *r_.resources)
+      if (resource.units && resource.units->warps)  // out of one lane and into another
+        access(EnergyPart::kStacks, 2 * static_cast<double>(resource.units->warps->counts.packed_bytes),
+               register_kib(c_, static_cast<std::int64_t>(resource.resource)));
     for (const report::Cache& cache : r_.memory->caches)
       access(EnergyPart::kL2,
              line_bytes() * static_cast<double>(cache.counts.lines) +

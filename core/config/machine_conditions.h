@@ -56,6 +56,11 @@ constexpr bool has_many_lanes(const TestersConfig& testers) {
   return testers.simd.lanes > 1;
 }
 
+inline bool has_warps(const C& c) {
+  return c.testers.simt.warp > 0 ||
+         std::any_of(c.topology.overrides.begin(), c.topology.overrides.end(),
+                     [](const ResourceOverride& one) { return one.testers.simt.warp > 0; });
+}
 constexpr bool has_sky_map(const C& c) {
   return c.scene.sky && !c.scene.sky->file.empty();
 }
@@ -218,6 +223,11 @@ inline constexpr Condition kVectors{[](const C& c, const S&) {
                                     },
                                     "units have one lane"};
 
+inline constexpr Condition kWarps{[](const C& c, const S&) { return has_warps(c); },
+                                  "rays go by themselves, not in warps"};
+inline constexpr Condition kRepacks{
+    [](const C& c, const S&) { return c.testers.simt.compaction == SimtConfig::Compaction::kRepack; },
+    "rays are not packed into new warps"};
 inline constexpr Condition kOwnCaches{[](const C& c, const S&) { return c.memory.l1_kib > 0; },
                                       "resources have no caches of their own"};
 inline constexpr Condition kEndFlags{

@@ -254,6 +254,7 @@ void cycle_lines(Table& table, const Report& report) {
                at_once(d->tester_busy), at_once(d->held_back), at_once(d->results_full),
                percent(ratio(d->ahead, d->ids)), part(d->queue_full));
   }
+  table.text(warp_table(*report.resources));
 }
 
 void energy_lines(Table& table, const Report& report) {

@@ -139,6 +139,14 @@ void cycle_words(Words& w) {
   w.line("slow pixels")
       .item("*: N cycles of N rays", "heat.slowest[].cycles", "a pixel whose rays took most cycles, and these rays")
       .item("N a pixel", "heat.cycles_mean");
+  w.line("warps")
+      .item("N of lanes with a ray", "resources[].units.warps.fill",
+            "part of the lanes whose ray had not ended, over the cycles of all warps")
+      .item("N with a test", "resources[].units.warps.step_fill", "part of the lanes with a test, over all steps")
+      .item("N of lines read", "resources[].units.warps.lines_read",
+            "part of the lines that lanes wanted which were read; the others were read for several lanes together")
+      .item("N bytes of stack spilled a ray", "resources[].units.warps.spilled_bytes",
+            "entries of stacks that were written to memory");
   w.line("bottleneck")
       .item("*", "bottleneck.verdict", "the class of parts that limits the machine, and the gain if it were relaxed")
       .item(

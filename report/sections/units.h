@@ -1,6 +1,9 @@
 #pragma once
 
+#include <vector>
+
 #include "core/statistics/distributor_counts.h"
+#include "core/statistics/warp_counts.h"
 #include "core/types/unit_kind.h"
 #include "report/sections/visitor.h"
 
@@ -35,6 +38,41 @@ void describe(V& v, const LaneFill& r) {
   for (const UnitKindRow& row : kUnitKinds) v.field(row.name, r.kinds[row.kind], "fraction", row.meaning);
 }
 
+/// The lanes of the rays of one bounce.
+struct BounceLanes {
+  std::uint64_t bounce = 0;
+  LaneUse use{};
+};
+
+template <class V>
+void describe(V& v, const BounceLanes& r) {
+  v.field("bounce", r.bounce, "",
+          "bounce of the rays; 0 is that of camera rays and of the shadow rays of what they hit");
+  describe(v, r.use);
+  v.field("fill", ratio(r.use.ray_cycles, r.use.lane_cycles), "fraction", "part of the lanes whose ray had not ended");
+}
+
+/// Rays in warps.
+struct Warps {
+  std::uint64_t lanes = 0;  ///< of a warp
+  WarpCounts counts{};
+  std::vector<BounceLanes> bounces{};
+};
+
+template <class V>
+void describe(V& v, const Warps& r) {
+  const auto fill = [&](std::uint64_t tested, std::uint64_t steps) { return ratio(tested, steps * r.lanes); };
+  v.field("fill", ratio(r.counts.ray_cycles, r.counts.lane_cycles), "fraction",
+          "part of the lanes whose ray had not ended, over the cycles of all warps");
+  v.field("step_fill", fill(r.counts.tested, r.counts.steps), "fraction", "part of the lanes with a test, over steps");
+  v.field("box_fill", fill(r.counts.box_tested, r.counts.box_steps), "fraction",
+          "part of the lanes that tested a node, over steps in which one did");
+  v.field("leaf_fill", fill(r.counts.leaf_tested, r.counts.leaf_steps), "fraction",
+          "part of the lanes that tested a leaf, over steps in which one did");
+  describe(v, r.counts);
+  v.section("bounces", r.bounces, "the lanes by the bounce of their rays");
+}
+
 struct Units {
   PerUnit<UnitCycles> kinds{};
   std::optional<LaneFill> lane_fill{};
@@ -42,6 +80,7 @@ struct Units {
   std::optional<UnitCycles> ray_reads{}, primitive_ray_reads{};
   std::optional<std::uint64_t> bank_conflicts{}, second_reads{};
   std::optional<DistributorCounts> distributor{};
+  std::optional<Warps> warps{};
   std::uint64_t dispatch_busy = 0, dispatch_idle = 0;
 };
 
@@ -66,6 +105,7 @@ void describe(V& v, const Units& r) {
       "distributor", r.distributor,
       "the testers behind a distributor, with topology.form: distributor; the cycles of units are the mean of the "
       "testers");
+  v.section("warps", r.warps, "rays in warps, with testers.simt");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("dispatch_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("dispatch_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");

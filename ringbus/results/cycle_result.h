@@ -17,6 +17,7 @@
 #include "core/statistics/ray_bytes.h"
 #include "core/statistics/shading_counts.h"
 #include "core/statistics/shape_buffer_counts.h"
+#include "core/statistics/warp_counts.h"
 #include "core/types/unit_kind.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
@@ -63,6 +64,9 @@ struct TileResult {
   std::uint64_t second_reads = 0;  ///< records that both ports have read for one test
   Cycle bank_conflicts =
       0;  ///< cycles of the ports, beyond those that the reads would take if they were even over the banks
+  std::optional<WarpCounts> warps;               ///< only with `testers.simt`
+  std::uint64_t warp_lanes = 0;                  ///< likewise; of a warp
+  std::vector<LaneUse> bounces;                  ///< likewise; by bounce
   std::optional<DistributorCounts> distributor;  ///< only in a central machine with a distributor
   Utilisation dispatch;
   PacketKindCounts sent;

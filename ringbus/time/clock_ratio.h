@@ -24,7 +24,6 @@ class ClockRatio {
     synchroniser_ = core == network ? 0 : static_cast<Cycle>(synchroniser_cycles);
   }
 
-  bool same() const { return core_ == network_; }
   /// The first edge of the network's clock that is not before an edge of the resources', and the other way.
   Cycle to_network(Cycle core) const { return ceil_div(core * network_, core_); }
   Cycle to_core(Cycle network) const { return ceil_div(network * core_, network_); }

@@ -4,6 +4,7 @@
 
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
+#include "core/config/fields/simt.h"
 #include "core/types/unit_kind.h"
 
 namespace carousel {
@@ -43,6 +44,7 @@ struct TestersConfig {
 
     friend bool operator==(const Distributor&, const Distributor&) = default;
   } distributor;
+  SimtConfig simt;
   std::int64_t contexts = 16;
   std::int64_t window = 1;
   enum class OwnRays { kBefore, kAfter } own_rays = OwnRays::kBefore;
@@ -136,6 +138,7 @@ void describe(V& v, TestersConfig& c) {
     v.section_or_number(row.key, c.units[row.kind], row.meaning).relax(row.work, Better::kTwice, Relaxed{.times = 0});
   v.section("simd", c.simd, "The lanes of the units.");
   v.section("distributor", c.distributor, "Testers behind a distributor, with topology.form: distributor.");
+  v.section("simt", c.simt, "Warps of rays, with topology.shape: independent.");
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.")
       .relax("contexts", Better::kTwice);
   v.field("window", c.window, IntRange{1, 64}, "packets",

@@ -172,10 +172,10 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   if (resources <= kMaxResources && resources != c.resources)
     breach("topology.resources",
            fmt::format("the graph has {0} resources; expected {0}, or no number, found {1}", resources, c.resources));
-  if (config.area.budget_mm2 && config.area.fit == AreaConfig::Fit::kResources)
-    breach("area.fit",
-           "a graph has as many resources as are drawn, which no budget changes; expected another fit, or no "
-           "area.budget_mm2; found resources");
+  if (config.area.budget_mm2 && config.area.fit != AreaConfig::Fit::kRefuse)
+    breach("area.fit", fmt::format("a graph has as many resources as are drawn, which no budget changes; expected "
+                                   "refuse, or no area.budget_mm2; found {}",
+                                   enum_name(config.area.fit)));
   for (std::size_t i = 0; i < c.links.size() && config.engine.kind == EngineKind::kCycle; ++i)
     if (c.links[i].queue)
       breach(fmt::format("topology.links.{}.queue", i),

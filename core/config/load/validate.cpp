@@ -11,6 +11,7 @@
 #include "core/config/load/memory_rules.h"
 #include "core/config/load/network_rules.h"
 #include "core/config/load/rank_rules.h"
+#include "core/config/load/warp_rules.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/text/edit_distance.h"
@@ -48,6 +49,7 @@ class Rules {
     config::check_own(c, breach);
     config::check_network(c, options_.force, breach);
     config::check_ranks(c, breach);
+    config::check_warps(c, breach);
     sampling_fits();
     vary_names_keys();
     return std::move(issues_);

@@ -9,6 +9,7 @@
 #include "core/system/error.h"
 #include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/tile/tile.h"
+#include "ringbus/cycle/tile/warps/warp_tile.h"
 #include "ringbus/time/wait_cycle.h"
 
 namespace carousel::ringbus::cycle {
@@ -153,6 +154,8 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       record_links(id, [&](std::size_t port, const LinkRecorder& to) { links.out[port].record(to); });
       resources_.push_back(std::make_unique<Tile>(id, shared_, shape_memory_, settings,
                                                   Tile::Ports{side, std::move(links.in), std::move(links.out)}));
+    } else if (settings.testers.simt.warp > 0) {
+      resources_.push_back(std::make_unique<WarpTile>(id, shared_, shape_memory_, settings, side));
     } else {
       resources_.push_back(std::make_unique<IndependentTile>(id, shared_, shape_memory_, settings, side));
     }

@@ -69,6 +69,7 @@ TEST_F(IgnoredKeys, ChangeNothing) {
   const std::vector<Machine> machines{
       {kTerrain, {"topology.resources=1"}},
       {kTerrain, {"topology.shape=independent"}},
+      {kTerrain, {"topology.shape=independent", "testers.simt.warp=8"}},
       {kTerrain, {"topology.shape=central", "topology.resources=1", "testers.simd.lanes=8"}},
       {kTerrain, {"topology.shape=central", "topology.form=distributor", "topology.resources=1"}},
       {kTerrain, {"collections.home=local", "memory.dram.preset=hbm2_2", "energy.profile=n45"}},

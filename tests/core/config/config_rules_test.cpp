@@ -55,6 +55,36 @@ INSTANTIATE_TEST_SUITE_P(
                         "rays: {banks: 4}\n",
                   "test.yaml:4:15: rays.banks: each tester reads a record a cycle from its own ray memory; expected 0, "
                   "found 4"},
+        BadConfig{"WarpsOfPackets", SCENE "engine: {kind: cycle}\ntesters: {simt: {warp: 32}}\n",
+                  "test.yaml:3:25: testers.simt.warp: warps are of resources that trace their own rays, not those of "
+                  "packets; expected 0, or topology.shape: independent; found 32"},
+        BadConfig{"WarpsWithoutRays",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\nrays: {slots_per_resource: 16}\n"
+                        "testers: {simt: {warp: 32}}\n",
+                  "test.yaml:5:25: testers.simt.warp: no warp would ever be full; expected at most "
+                  "rays.slots_per_resource = 16, found 32"},
+        BadConfig{"HelpInPackedWarps",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\n"
+                        "testers: {simt: {warp: 32, compaction: repack, idle_lanes: help}}\n",
+                  "test.yaml:4:60: testers.simt.idle_lanes: no ray of a warp that is packed anew for each step has "
+                  "ended; expected wait, or compaction: none; found help"},
+        BadConfig{
+            "LanesInWarps",
+            SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\n"
+                  "testers: {simt: {warp: 32}, simd: {lanes: 4}}\n",
+            "test.yaml:4:43: testers.simd.lanes: the lanes of a warp share units that test one ray each; expected "
+            "1, and more units; found 4"},
+        BadConfig{
+            "FlagsInWarps",
+            SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\ntesters: {simt: {warp: 32}}\n"
+                  "memory: {strip_end: flag}\n",
+            "test.yaml:5:21: memory.strip_end: the lanes of a warp ask for lines, whose number they have to know; "
+            "expected length, found flag"},
+        BadConfig{"HelpersInWarps",
+                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\ntesters: {simt: {warp: 32}}\n"
+                        "shading: {idle_resources_shade: true}\n",
+                  "test.yaml:5:33: shading.idle_resources_shade: resources with warps do not help the shader workers; "
+                  "expected false, found true"},
         BadConfig{"CentralUnit", SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 4}\n",
                   "test.yaml:3:39: topology.resources: a central machine is one unit, with testers.simd.lanes cells; "
                   "expected 1, found 4"},

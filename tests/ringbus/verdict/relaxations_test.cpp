@@ -20,6 +20,11 @@ void as_cells(Config& c) {
   c.testers.units[UnitKind::kBox] = {1, 1, 1};
 }
 
+void as_warps(Config& c) {
+  c.topology.shape = TopologyShape::kIndependent;
+  c.testers.simt.warp = 8;
+}
+
 void as_distributor(Config& c) {
   c.topology.shape = TopologyShape::kCentral;
   c.topology.form = CentralForm::kDistributor;
@@ -124,6 +129,14 @@ TEST(WhatIf, EveryLiftIsNoticed) {
          c.testers.units[UnitKind::kBox] = {1, 20, 20};
        },
        0.1},
+      {"warp_reads", [](Config& c) { as_warps(c), c.testers.simt.warps = 16; }},
+      {"stack_registers", [](Config& c) { as_warps(c), c.testers.simt.stack_entries = 1; }, 0.02},
+      {"packing",
+       [](Config& c) {
+         as_warps(c);
+         c.testers.simt.compaction = SimtConfig::Compaction::kRepack;
+         c.testers.simt.repack_rays_per_cycle = 1;
+       }},
       {"shading_lanes", [](Config& c) { shade_in_vectors(c, 2); }},
       {"shading_order", [](Config& c) { shade_in_vectors(c, 8); }},
       {"shading_sorter",

@@ -22,15 +22,22 @@ void RayWalk::start(accel::NodeKey from) {
   bytes_ = {};
 }
 
-std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record) {
+std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record, std::size_t beyond) {
   if ((record.tag.flags & kRayDone) != 0) {
     // Waiting nodes are forgotten without being read.
     stack_.clear();
+    next_in_hand_ = false;
     bytes_.held = 0;
   }
-  while (!stack_.empty())
+  while (stack_.size() > beyond)
     if (const NextNode top = pop(); !(top.entry > record.hit.t)) return top.key;
   return std::nullopt;
+}
+
+std::uint64_t RayWalk::bytes_of(std::size_t first, std::size_t last) const {
+  std::uint64_t bytes = 0;
+  for (std::size_t i = first; i < last; ++i) bytes += entry_bytes(stack_[i].key);
+  return bytes;
 }
 
 NextNode RayWalk::pop() {
@@ -59,7 +66,8 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
   tests.transforms = tests.transforms_in_double = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
   if (!key.ref.is_inner() || mask == 0) return tests;
-  std::uint64_t bytes = 0;
+  // The first child of a strip that was tested before this one goes onto the stack after all.
+  std::uint64_t bytes = next_in_hand_ ? entry_bytes(stack_.back().key) : 0;
   last_first(order_, mask, entry, [&](int lane) {
     stack_.push_back({accel.child_key(key, lane), entry[lane], 0, true});
     bytes += entry_bytes(stack_.back().key);

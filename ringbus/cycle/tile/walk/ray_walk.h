@@ -23,9 +23,11 @@ class RayWalk {
   /// Keeps a reference.
   RayWalk(TransformAccount& transforms, ChildOrder order) : transforms_(&transforms), order_(order) {}
   void start(accel::NodeKey from);
-  /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests.
-  std::optional<accel::NodeKey> next(const RayRecord& record);
+  /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests. The
+  /// oldest `beyond` entries of the stack are not at hand: where nothing else is left, there is nothing either.
+  std::optional<accel::NodeKey> next(const RayRecord& record, std::size_t beyond = 0);
   /// Tests the ray, the one member of `ray`, against that strip. Returns the tests that the hardware has to make.
+  /// Several strips that next() has given may be tested one after another.
   IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
 
   /// Tells whether `instance` is another one than that of the last strip.
@@ -36,6 +38,10 @@ class RayWalk {
     std::uint64_t held = 0, pushed = 0, popped = 0;
   };
   const StackBytes& stack_bytes() const { return bytes_; }
+  /// The entries on the stack, without the first child.
+  std::size_t entries() const { return stack_.size() - (next_in_hand_ ? 1 : 0); }
+  /// The bytes of the entries from `first` to before `last`, counted from the oldest.
+  std::uint64_t bytes_of(std::size_t first, std::size_t last) const;
 
  private:
   NextNode pop();

@@ -1,0 +1,59 @@
+#include "core/config/load/warp_rules.h"
+
+#include <fmt/format.h>
+
+namespace carousel::config {
+
+namespace {
+
+class WarpRules {
+ public:
+  WarpRules(const Config& config, const RuleBreach& breach) : c(config), breach_(breach) {}
+
+  void check() {
+    if (c.engine.kind != EngineKind::kCycle) return;
+    check("testers", c.testers);
+    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
+      check(fmt::format("topology.overrides.{}.testers", i), c.topology.overrides[i].testers);
+  }
+
+ private:
+  void check(const std::string& testers, const TestersConfig& of) {
+    const SimtConfig& simt = of.simt;
+    if (simt.warp == 0) return;
+    const auto breach = [&](const char* key, std::string message) { breach_(testers + ".simt." + key, message); };
+    if (properties_of(c.topology.shape).has_packets)
+      breach("warp", fmt::format("warps are of resources that trace their own rays, not those of packets; expected 0, "
+                                 "or topology.shape: independent; found {}",
+                                 simt.warp));
+    if (simt.warp > c.rays.slots_per_resource)
+      breach("warp", fmt::format("no warp would ever be full; expected at most rays.slots_per_resource = {}, found {}",
+                                 c.rays.slots_per_resource, simt.warp));
+    if (simt.compaction == SimtConfig::Compaction::kRepack && simt.idle_lanes == SimtConfig::IdleLanes::kHelp)
+      breach("idle_lanes",
+             "no ray of a warp that is packed anew for each step has ended; expected wait, or "
+             "compaction: none; found help");
+    if (of.simd.lanes > 1)
+      breach_(
+          testers + ".simd.lanes",
+          fmt::format("the lanes of a warp share units that test one ray each; expected 1, and more units; found {}",
+                      of.simd.lanes));
+    if (c.memory.strip_end == MemoryConfig::StripEnd::kFlag)
+      breach_("memory.strip_end",
+              "the lanes of a warp ask for lines, whose number they have to know; expected length, found flag");
+    if (c.shading.idle_resources_shade)
+      breach_("shading.idle_resources_shade",
+              "resources with warps do not help the shader workers; expected false, found true");
+  }
+
+  const Config& c;
+  const RuleBreach& breach_;
+};
+
+}  // namespace
+
+void check_warps(const Config& config, const RuleBreach& breach) {
+  WarpRules(config, breach).check();
+}
+
+}  // namespace carousel::config

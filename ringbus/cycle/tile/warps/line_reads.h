@@ -1,0 +1,120 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <unordered_map>
+#include <vector>
+
+#include "ringbus/cycle/shapes/shape_buffer.h"
+
+namespace carousel::ringbus::cycle {
+
+/// The reads of shape data for warps: lanes that ask together get each line once, and the port takes so many lines a
+/// cycle. A line goes into the lanes that want it when it has come, so that nobody holds its place in the shape buffer;
+/// hence reads that wait for room cannot block one another.
+class LineReads {
+ public:
+  /// A line here is as much as a place of the shape buffer at least.
+  LineReads(ShapeBuffer& shapes, const MemoryConfig& config, std::int64_t lines_per_cycle)
+      : shapes_(shapes),
+        line_bytes_(std::max<std::uint64_t>(fetched_bytes(config), ShapeBuffer::kPlaceBytes)),
+        per_cycle_(static_cast<std::uint64_t>(lines_per_cycle)) {}
+
+  /// Asks for what `task` needs. Returns the number of its lines.
+  std::uint32_t ask(std::uint32_t task, const ShapeNeed& need) {
+    std::uint32_t lines = 0;
+    for (const ShapeSpan& span : need) {
+      if (span.bytes == 0) continue;
+      const std::uint64_t last = (span.address + span.bytes - 1) / line_bytes_;
+      for (std::uint64_t line = span.address / line_bytes_; line <= last; ++line) lines += add(line, task);
+    }
+    wanted_ += lines;
+    return lines;
+  }
+  /// Those who ask from now on do so apart.
+  void end_group() { group_.clear(); }
+
+  /// The time of the next read; kNever if nothing waits for the port.
+  Cycle next(Cycle now) const { return queue_.empty() ? kNever : now + 1; }
+  /// Reads as many lines as the port takes in this cycle. True if it read any.
+  bool read(Cycle now) {
+    if (now != at_) {
+      at_ = now;
+      in_cycle_ = 0;
+    }
+    bool any = false;
+    for (; !queue_.empty() && in_cycle_ < per_cycle_; ++in_cycle_) {
+      const std::uint32_t user = queue_.front();
+      queue_.pop_front();
+      ++read_;
+      any = true;
+      if (shapes_.take(user, {ShapeSpan{reads_[user].line * line_bytes_, static_cast<std::uint32_t>(line_bytes_)}, {}},
+                       now))
+        arrive(user, now);
+    }
+    return any;
+  }
+  /// Takes the lines that have come meanwhile. True if there were any.
+  bool take_ready(Cycle now) {
+    if (shapes_.ready().empty()) return false;
+    // Places that become free may serve others at once.
+    for (std::size_t i = 0; i < shapes_.ready().size(); ++i) arrive(shapes_.ready()[i], now);
+    shapes_.ready().clear();
+    return true;
+  }
+  /// Tasks, once for each of their lines that has come. The caller empties it.
+  std::vector<std::uint32_t>& here() { return here_; }
+  bool idle() const { return reads_under_way_ == 0; }
+  std::uint64_t wanted() const { return wanted_; }
+  std::uint64_t read() const { return read_; }
+
+ private:
+  struct Read {
+    std::uint64_t line = 0;
+    std::vector<std::uint32_t> tasks;
+  };
+
+  /// False if the task has asked for this line already: a strip and its transform may share one.
+  bool add(std::uint64_t line, std::uint32_t task) {
+    const auto [at, is_new] = group_.try_emplace(line, 0);
+    if (is_new) {
+      at->second = free_read();
+      reads_[at->second].line = line;
+      queue_.push_back(at->second);
+      ++reads_under_way_;
+    }
+    std::vector<std::uint32_t>& tasks = reads_[at->second].tasks;
+    if (!tasks.empty() && tasks.back() == task) return false;
+    tasks.push_back(task);
+    return true;
+  }
+  std::uint32_t free_read() {
+    if (free_.empty()) {
+      reads_.emplace_back();
+      return static_cast<std::uint32_t>(reads_.size() - 1);
+    }
+    const std::uint32_t user = free_.back();
+    free_.pop_back();
+    return user;
+  }
+  void arrive(std::uint32_t user, Cycle now) {
+    here_.insert(here_.end(), reads_[user].tasks.begin(), reads_[user].tasks.end());
+    reads_[user].tasks.clear();
+    --reads_under_way_;
+    shapes_.release(user, now);
+    free_.push_back(user);
+  }
+
+  ShapeBuffer& shapes_;
+  std::uint64_t line_bytes_, per_cycle_;
+  std::vector<Read> reads_;  // by user of the shape buffer
+  std::vector<std::uint32_t> free_;
+  std::deque<std::uint32_t> queue_;                         // reads that wait for the port
+  std::unordered_map<std::uint64_t, std::uint32_t> group_;  // by line
+  std::vector<std::uint32_t> here_;
+  std::size_t reads_under_way_ = 0;
+  Cycle at_ = kNever;
+  std::uint64_t in_cycle_ = 0, wanted_ = 0, read_ = 0;
+};
+
+}  // namespace carousel::ringbus::cycle

@@ -1,0 +1,105 @@
+// Rays in warps, in whole machines, which are configured as users do.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+
+#include "tests/app/time/timed_run.h"
+
+namespace carousel::warps_test {
+namespace {
+
+using Warps = TimedRun;
+using Sets = std::vector<std::string>;
+
+const char* const kMachine =
+    "scene: {builtin: terrain, triangles: 4000}\nimage: {width: 48, height: 32, samples: 1, max_depth: 3}\n"
+    "topology: {resources: 2, shape: independent}\nrays: {slots_per_resource: 128}\n"
+    "testers: {simt: {warp: 16, warps: 8}}\n"
+    "memory: {l2_kib: 32, shape_buffer_kib: 8, dram_latency_cycles: 200}\nenergy: {profile: n45}\n";
+
+/// A number of the warps of all resources together.
+std::uint64_t sum(const nlohmann::ordered_json& report, const std::string& key) {
+  std::uint64_t out = 0;
+  for (const auto& resource : report["resources"]) out += resource["units"]["warps"][key].get<std::uint64_t>();
+  return out;
+}
+double fill(const nlohmann::ordered_json& report) {
+  return static_cast<double>(sum(report, "ray_cycles")) / static_cast<double>(sum(report, "lane_cycles"));
+}
+
+TEST_F(Warps, ChangeNoHitAndCostTime) {
+  const Json alone = report(kMachine, {"testers.simt.warp=0"}), warps = report(kMachine),
+             packed = report(kMachine, {"testers.simt.compaction=repack"}),
+             helped = report(kMachine, {"testers.simt.idle_lanes=help"}),
+             apart = report(kMachine, {"testers.simt.step=lane"}),
+             shallow = report(kMachine, {"testers.simt.stack_entries=1"});
+  for (const Json* r : {&warps, &packed, &helped, &apart, &shallow}) {
+    EXPECT_EQ((*r)["digest"], alone["digest"]);
+    EXPECT_GT((*r)["engine"]["cycles"], alone["engine"]["cycles"]);
+    EXPECT_GT(fill(*r), 0);
+    EXPECT_LE(fill(*r), 1);
+  }
+  EXPECT_FALSE(alone["resources"][0]["units"].contains("warps"));
+  EXPECT_GT(fill(packed), fill(warps));
+  EXPECT_GT(sum(packed, "packed_bytes"), 0u);
+  EXPECT_EQ(sum(warps, "packed_bytes"), 0u);
+  EXPECT_GT(sum(helped, "helped"), 0u);
+  EXPECT_LT(apart["engine"]["cycles"], warps["engine"]["cycles"]);
+  EXPECT_GT(shallow["engine"]["cycles"], warps["engine"]["cycles"]);
+  EXPECT_GT(sum(shallow, "spilled_bytes"), sum(warps, "spilled_bytes"));
+  // What is spilled goes over the wires of requests to the L2, and is counted there.
+  EXPECT_GT(bytes(shallow, "shape requests"),
+            bytes(warps, "shape requests") + sum(shallow, "spilled_bytes") - sum(warps, "spilled_bytes"));
+}
+
+TEST_F(Warps, MoreOfThemHideMemory) {
+  const auto cycles = [&](const char* warps) {
+    return report(kMachine, {std::string("testers.simt.warps=") + warps})["engine"]["cycles"].get<std::uint64_t>();
+  };
+  EXPECT_LT(cycles("8"), cycles("2"));
+}
+
+TEST_F(Warps, RowsByBounceAddUp) {
+  const Json r = report(kMachine);
+  for (const Json& resource : r["resources"]) {
+    const Json& warps = resource["units"]["warps"];
+    std::uint64_t lanes = 0, rays = 0;
+    for (const Json& row : warps["bounces"]) {
+      lanes += row["lane_cycles"].get<std::uint64_t>();
+      rays += row["ray_cycles"].get<std::uint64_t>();
+    }
+    EXPECT_GT(warps["bounces"].size(), 1u);
+    EXPECT_EQ(lanes, warps["lane_cycles"]);
+    EXPECT_EQ(rays, warps["ray_cycles"]);
+  }
+}
+
+TEST_F(Warps, AreTheSameOnAnyThreads) {
+  const Sets sets{"testers.simt.compaction=repack", "testers.simt.stack_entries=2"};
+  Sets threads = sets;
+  threads.emplace_back("engine.threads=2");
+  EXPECT_EQ(report(kMachine, sets)["engine"]["cycles"], report(kMachine, threads)["engine"]["cycles"]);
+}
+
+// Registers and what lanes hold of nodes are charged.
+TEST_F(Warps, HaveAnArea) {
+  const auto mm2 = [&](const char* set) {
+    return report(kMachine, {set})["area"]["parts"]["stacks"]["mm2"].get<double>();
+  };
+  EXPECT_LT(mm2("testers.simt.stack_entries=4"), mm2("testers.simt.stack_entries=16"));
+  EXPECT_LT(mm2("testers.simt.warps=2"), mm2("testers.simt.warps=4"));
+}
+
+TEST_F(Warps, ABudgetScalesWhatAllShare) {
+  const Json r = report(kMachine, {"area.budget_mm2=40", "area.fit=all", "shading.workers=6", "memory.shared_by=8"});
+  const auto resources = r["config"]["topology"]["resources"].get<int>();
+  EXPECT_GT(resources, 2);
+  EXPECT_LE(r["area"]["mm2"].get<double>(), 40);
+  EXPECT_EQ(r["config"]["shading"]["workers"], 3 * resources);
+  EXPECT_EQ(r["config"]["memory"]["l2_kib"], 16 * resources);
+  EXPECT_EQ(r["config"]["memory"]["shared_by"], resources);
+}
+
+}  // namespace
+}  // namespace carousel::warps_test
