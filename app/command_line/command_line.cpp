@@ -33,6 +33,7 @@
 #include "app/host/output.h"
 #include "app/host/version_text.h"
 #include "app/usage/examples.h"
+#include "app/versus/versus_command.h"
 #include "core/system/error.h"
 #include "core/system/process_memory.h"
 #include "core/system/stop_request.h"
@@ -86,6 +87,7 @@ struct Arguments {
   CompareArguments compare;
   ReportArguments report;
   FollowArguments follow;
+  VersusArguments versus;
   SchemaArguments schema;
   CompletionArguments completion;
 };
@@ -116,6 +118,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   add_accuracy(program, arguments.accuracy);
   add_inspect(program, arguments.inspect);
   add_compare(program, arguments.compare);
+  add_versus(program, arguments.versus);
   add_follow(program, arguments.follow);
   add_report(program, arguments.report);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
@@ -154,7 +157,7 @@ int run_command_line(int argc, const char* const* argv) {
     return kUsage;
   }
   start_log(arguments.log, arguments.run.quiet || arguments.sweep.quiet || arguments.accuracy.quiet ||
-                               arguments.stress.quiet || arguments.follow.quiet);
+                               arguments.stress.quiet || arguments.follow.quiet || arguments.versus.quiet);
   if (program.got_subcommand("run")) return run_command(arguments.run);
   if (program.got_subcommand("sweep")) return sweep_command(arguments.sweep);
   if (program.got_subcommand("stress")) return stress_command(arguments.stress);
@@ -166,6 +169,7 @@ int run_command_line(int argc, const char* const* argv) {
   }
   if (program.got_subcommand("inspect")) return inspect_command(arguments.inspect);
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
+  if (program.got_subcommand("versus")) return versus_command(arguments.versus);
   if (program.got_subcommand("report")) return report_command(arguments.report);
   if (program.got_subcommand("follow")) return follow_command(arguments.follow);
   if (program.got_subcommand("completion")) return completion_command(program, arguments.completion);

@@ -39,12 +39,32 @@ void add_compare(CLI::App& program, CompareArguments& c) {
       ->each([&c](const std::string&) { c.expect_identical = true; });
 }
 
+void add_versus(CLI::App& program, VersusArguments& v) {
+  CLI::App* versus = program.add_subcommand(
+      "versus", "Compare a machine with the conventional one of the same units, memory and rays, and of equal area");
+  add_config_options(*versus, v);
+  versus->add_option("--seeds", v.seeds, "Seeds of the picture with which each machine is simulated")
+      ->check(CLI::Range(1, 64))
+      ->type_name("N")
+      ->capture_default_str();
+  versus->add_flag("--no-search", v.no_search,
+                   "Do not relax the parts of the slower machine (default: each class of them, one after another)");
+  versus
+      ->add_option("--out", v.out,
+                   "Folder for versus.json, versus.html and config.resolved.yaml (default: out/<config name>-versus)")
+      ->type_name("FOLDER");
+  versus->add_flag("--force", v.force,
+                   "Replace the results of another configuration in the folder (default: an error)");
+  versus->add_flag("--json", v.json, kJsonHelp);
+  versus->add_flag("--quiet", v.quiet, kQuietHelp);
+}
+
 void add_report(CLI::App& program, ReportArguments& r) {
   CLI::App* report =
       program.add_subcommand("report", "Make the HTML page of a run, or of another command's JSON, again");
   report
       ->add_option("folder", r.folder,
-                   "Folder that run, sweep, stress or accuracy wrote, or their JSON or that of follow")
+                   "Folder that run, sweep, stress, accuracy or versus wrote, or their JSON or that of follow")
       ->required()
       ->type_name("PATH");
   report

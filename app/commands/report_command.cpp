@@ -47,6 +47,8 @@ std::string page_of_file(const report::Document& document, const std::filesystem
       return report::html::accuracy_page(json);
     case DocumentKind::kStress:
       return report::html::stress_page(json);
+    case DocumentKind::kVersus:
+      return report::html::versus_page(json);
     default:
       return run_page_of(json, file.parent_path());
   }
@@ -55,12 +57,12 @@ std::string page_of_file(const report::Document& document, const std::filesystem
 /// The results that commands wrote to a folder, side by side. Throws a FileError if there is nothing.
 std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> out;
-  for (const char* name : {"sweep.json", "report.json", "accuracy.json", "stress.json"})
+  for (const char* name : {"sweep.json", "report.json", "accuracy.json", "stress.json", "versus.json"})
     if (std::filesystem::exists(folder / name)) out.push_back(folder / name);
   if (out.empty())
-    throw FileError(
-        folder.string() +
-        ": no result of a command is in this folder: sweep.json, report.json, accuracy.json or stress.json");
+    throw FileError(folder.string() +
+                    ": no result of a command is in this folder: sweep.json, report.json, accuracy.json, "
+                    "stress.json or versus.json");
   return out;
 }
 

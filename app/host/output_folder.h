@@ -11,7 +11,7 @@
 namespace carousel::app {
 
 /// The commands whose results a folder may hold, side by side if they are of one configuration.
-enum class Results : std::uint8_t { kRun, kAccuracy, kStress };
+enum class Results : std::uint8_t { kRun, kAccuracy, kStress, kVersus };
 
 /// The folder of a command's results. Its files are written to a hidden folder beside it, and appear together when the
 /// run is over: the folder is there as a whole or as it was. Only where the folder holds files of other programs, or no

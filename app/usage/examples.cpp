@@ -15,6 +15,8 @@ const std::vector<Example>& examples() {
        "the same ring with fewer ray slots, under virtual time: cycles, and the parts that limit it"},
       {"run", "carousel run configs/demo.yaml --set scene='{file: my.glb}' --out out/mine", "a scene of your own"},
       {"compare", "carousel compare out/demo out/cycle", "the numbers of two runs side by side"},
+      {"versus", "carousel versus configs/ring_distributed.yaml",
+       "the machine against stacks in warps: faster or slower, by how much, and why"},
       {"sweep", "carousel sweep configs/sweep.yaml --vary topology.link.bytes_per_cycle=4..64*2",
        "many machines, a table of results"},
       {"sweep", "carousel sweep configs/sweep.yaml --dry-run", "how many points there are and how long they take"},

@@ -101,6 +101,36 @@ std::string stress_page(const Json& stress) {
                  Json::object(), {});
 }
 
+std::string versus_page(const Json& versus) {
+  const auto name = [](const char* key) { return [key](const Json& row) { return words(text_at(row, key)); }; };
+  const Table machines = table_of_rows("machines", "The machines", versus["machines"], name("name"),
+                                       {"rays_per_kilocycle.mean", "rays_per_kilocycle.error"});
+  const Table against = table_of_rows("against", "This machine against each twin", versus["against"], name("than"),
+                                      {"speed.ratio", "speed.low", "speed.high"});
+  const Table turns = table_of_rows("turns", "The slower machine with one class of parts relaxed", versus["turns"],
+                                    [](const Json& row) { return text_at(row, "action"); }, {"speed", "gain"});
+  const Table runs =
+      table_of_rows("runs", "Every simulated frame", versus["runs"],
+                    [](const Json& row) {
+                      return fmt::format("{}, seed {}", words(text_at(row, "machine")), number_at(row, "seed"));
+                    },
+                    {"rays_per_kilocycle"});
+  Html glance;
+  for (std::size_t i = 0; i < versus["lines"].size(); ++i)
+    glance += markup("<p class=\"{}\">{}</p>\n", i == 0 ? "verdict" : "detail", versus["lines"][i].get<std::string>());
+  Html twin = markup("<p>The twin is this machine with these keys:</p>\n<ul>\n");
+  for (const Json& set : versus["twin_sets"]) twin += markup("<li><code>{}</code></li>\n", set.get<std::string>());
+  twin += markup("</ul>\n");
+  return page_of("Carousel: a machine against its conventional twin", "carousel versus",
+                 {{"verdict", "At a glance", glance},
+                  {"machines", "The machines", bars_of(machines, "Rays per kilocycle")},
+                  {"against", "Against each twin", against.html()},
+                  {"turns", "What would turn it round", bars_of(turns, "Speed over that of the faster machine")},
+                  {"runs", "Runs", runs.html()},
+                  {"twin", "The twin", twin}},
+                 Json::object(), {});
+}
+
 std::string accuracy_page(const Json& accuracy) {
   Json levels = accuracy["levels"];
   for (Json& row : levels) {

@@ -29,8 +29,8 @@ using Json = nlohmann::ordered_json;
 constexpr std::uintmax_t kMostBytes = std::uintmax_t{512} << 20;
 constexpr const char* kChecksum = "checksum";
 constexpr const char* kExpected =
-    "expected the report.json of carousel run, a sweep.json or a point of it, a stress.json, an accuracy.json, or the "
-    "JSON of carousel follow";
+    "expected the report.json of carousel run, a sweep.json or a point of it, a stress.json, an accuracy.json, a "
+    "versus.json, or the JSON of carousel follow";
 
 /// Told by its keys.
 std::optional<DocumentKind> kind_of(const Json& json) {
@@ -39,9 +39,10 @@ std::optional<DocumentKind> kind_of(const Json& json) {
     DocumentKind kind;
   };
   constexpr Marks kMarks[] = {
-      {"point", "sets", DocumentKind::kPoint},  {"points", "main_effects", DocumentKind::kSweep},
-      {"config", "engine", DocumentKind::kRun}, {"levels", "spawn", DocumentKind::kAccuracy},
-      {"rows", "cores", DocumentKind::kStress}, {"spans", "stages", DocumentKind::kRayLife}};
+      {"point", "sets", DocumentKind::kPoint},       {"points", "main_effects", DocumentKind::kSweep},
+      {"config", "engine", DocumentKind::kRun},      {"levels", "spawn", DocumentKind::kAccuracy},
+      {"rows", "cores", DocumentKind::kStress},      {"spans", "stages", DocumentKind::kRayLife},
+      {"machines", "against", DocumentKind::kVersus}};
   if (!json.is_object()) return std::nullopt;
   for (const Marks& marks : kMarks)
     if (json.contains(marks.first) && json.contains(marks.second)) return marks.kind;
@@ -66,6 +67,8 @@ const Json& schema_of(DocumentKind kind) {
       return kSchema["$defs"]["accuracy"];
     case DocumentKind::kRayLife:
       return kSchema["$defs"]["ray_life"];
+    case DocumentKind::kVersus:
+      return kSchema["$defs"]["versus"];
     default:
       return kRun;
   }

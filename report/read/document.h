@@ -9,7 +9,7 @@
 namespace carousel::report {
 
 /// The files of our own that are read back.
-enum class DocumentKind { kRun, kSweep, kPoint, kStress, kAccuracy, kRayLife };
+enum class DocumentKind { kRun, kSweep, kPoint, kStress, kAccuracy, kRayLife, kVersus };
 
 /// A file that the program wrote, as it was read and checked: it keeps its schema (carousel schema report), and its
 /// lists fit together, so that readers need not ask. Without its checksum, which is no part of the content.

@@ -178,6 +178,10 @@ Json stress_json(const Stress& stress) {
   return JsonWriter::value_of(stress);
 }
 
+Json versus_json(const Versus& versus) {
+  return JsonWriter::value_of(versus);
+}
+
 Json ray_life_json(const RayLife& life) {
   return JsonWriter::value_of(life);
 }
@@ -197,6 +201,8 @@ Json report_schema() {
   schema["$defs"]["accuracy"] = accuracy_schema();
   schema["$defs"]["stress"] = SchemaWriter::schema_for(Stress{});
   schema["$defs"]["stress"]["description"] = "stress.json of carousel stress";
+  schema["$defs"]["versus"] = SchemaWriter::schema_for(Versus{});
+  schema["$defs"]["versus"]["description"] = "versus.json of carousel versus";
   schema["$defs"]["ray_life"] = SchemaWriter::schema_for(RayLife{});
   schema["$defs"]["ray_life"]["description"] = "the life of one ray, as carousel follow --json prints it";
   return schema;

@@ -7,6 +7,7 @@
 #include "report/run/report.h"
 #include "report/sections/ray_life.h"
 #include "report/stress/stress.h"
+#include "report/versus/versus.h"
 
 namespace carousel::report {
 
@@ -17,6 +18,9 @@ std::string json_text(const nlohmann::ordered_json& json);
 
 /// stress.json of `carousel stress`.
 nlohmann::ordered_json stress_json(const Stress& stress);
+
+/// versus.json of `carousel versus`.
+nlohmann::ordered_json versus_json(const Versus& versus);
 
 /// JSON Schema (draft 2020-12) of the report: types, units, meanings. The schemas of the other documents that are read
 /// back (report/read/document.h) stand under $defs: sweep, point, accuracy, stress, ray_life.

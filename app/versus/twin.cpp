@@ -1,0 +1,102 @@
+#include "app/versus/twin.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "core/config/load/validate.h"
+#include "core/system/error.h"
+
+namespace carousel::app {
+
+namespace {
+
+constexpr std::int64_t kLanes = 32;
+
+[[noreturn]] void no_twin(const LocatedConfig& located, const std::string& key, const std::string& why) {
+  throw ConfigError({{located.positions.find(key), key, why}});
+}
+
+/// A resource's testers: `testers` times the units, a unit for each lane of vector units, and warps for all of its
+/// rays.
+TestersConfig in_warps(TestersConfig testers, std::int64_t times, std::int64_t slots) {
+  for (const auto [kind, units] : testers.units) units.units = units.units * times * testers.simd.lanes;
+  testers.simd = {};
+  testers.distributor = {};
+  testers.bundle_blocks = TestersConfig{}.bundle_blocks;
+  if (testers.simt.warp == 0) {
+    testers.simt.warp = std::min(kLanes, slots);
+    testers.simt.warps = std::min<std::int64_t>(1024, std::max<std::int64_t>(1, slots / testers.simt.warp));
+  }
+  return testers;
+}
+
+/// The resources that differ from the rest, each by its number.
+std::vector<ResourceOverride> overrides_of(const Config& c) {
+  std::vector<ResourceOverride> out;
+  for (std::int64_t r = 0; r < c.topology.resources; ++r)
+    for (const ResourceOverride& one : c.topology.overrides) {
+      if (!one.is_about(r)) continue;
+      ResourceOverride own;
+      own.resource = r;
+      own.testers = in_warps(one.testers, own_testers(c), c.rays.slots_per_resource);
+      own.shape_buffer_kib = one.shape_buffer_kib;
+      out.push_back(own);
+      break;
+    }
+  return out;
+}
+
+/// Resources that share a cache where caches are drawn.
+std::int64_t sharing_of(const Config& c) {
+  std::int64_t caches = 0;
+  if (c.topology.shape == TopologyShape::kGraph)
+    for (const GraphNode& node : c.topology.nodes)
+      if (node.kind == GraphNodeKind::kCache) caches += node.count.value_or(1);
+  return caches == 0 ? c.memory.shared_by : (c.topology.resources + caches - 1) / caches;
+}
+
+}  // namespace
+
+Config conventional_twin(const LocatedConfig& located) {
+  const Config& c = located.config;
+  if (c.engine.kind != EngineKind::kCycle)
+    no_twin(located, "engine.kind", "machines are compared under virtual time; expected cycle, found native");
+  if (c.workload.kind == WorkloadConfig::Kind::kTraffic || c.workload.kind == WorkloadConfig::Kind::kMemoryTrace)
+    no_twin(located, "workload", "the conventional machine traces rays, and this workload has none; expected rays");
+  if (!properties_of(c.topology.shape).has_packets && c.testers.simt.warp > 0)
+    no_twin(located, "topology.shape",
+            fmt::format("this machine is the conventional one itself, with warps of {}; expected another shape, or "
+                        "testers.simt.warp: 0; found {}",
+                        c.testers.simt.warp, enum_name(c.topology.shape)));
+  Config t = c;
+  t.topology = {};
+  t.topology.resources = c.topology.resources;
+  t.topology.shape = TopologyShape::kIndependent;
+  t.topology.link = c.topology.link;
+  t.topology.overrides = overrides_of(c);
+  t.testers = in_warps(c.testers, own_testers(c), c.rays.slots_per_resource);
+  t.packets = {};
+  t.packets.rays = c.packets.rays;
+  t.collections = {};
+  t.collections.order = c.collections.order;
+  t.bundles = {};
+  t.rays.banks = 0;
+  if (t.rays.placement == Placement::kFirstTaker || t.rays.placement == Placement::kAddressed)
+    t.rays.placement = RaysConfig{}.placement;
+  const MemoryConfig usual;
+  t.memory.shared_by = sharing_of(c);
+  t.memory.fetch = usual.fetch;
+  t.memory.fetch_ahead = usual.fetch_ahead;
+  t.memory.strip_end = usual.strip_end;
+  t.shading.idle_resources_shade = false;
+  t.area.budget_mm2.reset();
+  t.area.fit = AreaConfig{}.fit;
+  if (std::vector<ConfigIssue> issues = validate_config(t, located.positions); !issues.empty()) {
+    for (ConfigIssue& issue : issues) issue.message = "of the conventional twin: " + issue.message;
+    throw ConfigError(std::move(issues));
+  }
+  return t;
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+
+#include "app/host/interrupt.h"
+#include "app/run/prepare.h"
+#include "report/versus/versus.h"
+
+namespace carousel::app {
+
+struct VersusSettings {
+  std::uint64_t seeds = 3;
+  bool search = true;  ///< relax each class of parts of the slower machine
+  bool quiet = false;
+};
+
+/// Simulates the machine of `prepared`, its conventional twin, and the twin at equal area, each with as many seeds of
+/// the picture, from the configuration's on; then the slower of the first two with each class of its parts relaxed.
+/// Throws a ConfigError where there is no twin, a SimulationError if hits or pictures differ, and Interrupted.
+report::Versus run_versus(Prepared& prepared, const VersusSettings& settings, const InterruptScope& interrupt);
+
+}  // namespace carousel::app

@@ -1,0 +1,84 @@
+#include <cmath>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "report/run/report_json.h"
+#include "report/versus/versus.h"
+#include "tests/app/support/program.h"
+#include "tests/support/json_schema_check.h"
+
+namespace carousel::versus_command_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+const char* const kRing =
+    "scene: {builtin: terrain, triangles: 900}\nimage: {width: 16, height: 12, samples: 1, max_depth: 1}\n"
+    "engine: {kind: cycle}\ntopology: {resources: 2}\nrays: {slots_per_resource: 64}\ncollections: {capacity: 4096}\n";
+
+TEST(VersusCommand, ComparesAMachineWithItsTwin) {
+  const Program program;
+  program.write("a.yaml", kRing);
+  const Outcome outcome = program.run({"versus", "a.yaml", "--seeds", "2", "--out", "o"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json json = Json::parse(program.read("o/versus.json"));
+  EXPECT_EQ(schema_problems(report::report_schema()["$defs"]["versus"], json), std::vector<std::string>{});
+  ASSERT_EQ(json["lines"].size(), 5u);
+  for (const Json& line : json["lines"]) EXPECT_THAT(outcome.out, HasSubstr(line.get<std::string>()));
+  EXPECT_THAT(program.read("o/versus.html"), HasSubstr("conventional twin"));
+  ASSERT_EQ(json["machines"].size(), 3u);
+  EXPECT_EQ(json["machines"][1]["resources"], 2);
+  EXPECT_TRUE(json["machines"][1].contains("lane_fill"));
+  EXPECT_LE(json["machines"][2]["mm2"].get<double>(), json["machines"][0]["mm2"].get<double>());
+  ASSERT_EQ(json["runs"].size(), 6u);
+  for (std::size_t i = 2; i < 6; ++i) EXPECT_EQ(json["runs"][i]["hits"], json["runs"][i % 2]["hits"]);
+  EXPECT_THAT(json["twin_sets"].dump(), HasSubstr("topology.shape=independent"));
+  const Json& pair = json["against"][0];
+  EXPECT_LT(pair["speed"]["low"].get<double>(), pair["speed"]["ratio"].get<double>());
+  const bool slow = pair["speed"]["ratio"].get<double>() < 1;
+  EXPECT_EQ(json["slower"], slow ? "machine" : "twin");
+  EXPECT_GT(json["turns"].size(), 5u);
+  for (std::size_t i = 1; i < json["turns"].size(); ++i)
+    EXPECT_LE(json["turns"][i]["gain"].get<double>(), json["turns"][i - 1]["gain"].get<double>());
+  // The page can be made again.
+  EXPECT_EQ(program.run({"report", "o/versus.json", "--out", "again.html"}).status, 0);
+  EXPECT_EQ(program.read("again.html"), program.read("o/versus.html"));
+}
+
+TEST(VersusCommand, RefusesWhatHasNoTwin) {
+  const Program program;
+  program.write("a.yaml", kRing);
+  const auto error = [&](std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"versus", "a.yaml", "--out", "o"});
+    const Outcome outcome = program.run(arguments);
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_FALSE(std::filesystem::exists(program.folder() / "o/versus.json"));
+    return outcome.err;
+  };
+  EXPECT_THAT(error({"--set", "engine.kind=native"}), HasSubstr("expected cycle, found native"));
+  EXPECT_THAT(error({"--set", "workload=traffic"}), HasSubstr("expected rays"));
+  EXPECT_THAT(error({"--set", "topology.shape=independent", "--set", "testers.simt.warp=32"}),
+              HasSubstr("this machine is the conventional one itself"));
+  EXPECT_THAT(error({"--seeds", "0"}), HasSubstr("--seeds"));
+}
+
+// By hand: ratios 2 and 8 have the geometric mean 4; with two values t is 12.71 and the error of the mean half of
+// ln 4 (W. S. Gosset, The probable error of a mean, 1908).
+TEST(VersusRatio, IsOfPairs) {
+  const report::VersusRatio two = report::versus_ratio({2, 16}, {1, 2});
+  EXPECT_DOUBLE_EQ(two.ratio, 4);
+  EXPECT_NEAR(*two.high / 4, std::exp(12.7062 * 0.693147), 20);
+  EXPECT_NEAR(*two.low * *two.high, 16, 1e-9);
+  const report::VersusRatio one = report::versus_ratio({3}, {2});
+  EXPECT_DOUBLE_EQ(one.ratio, 1.5);
+  EXPECT_FALSE(one.low);
+  EXPECT_FALSE(one.surely_more());
+  EXPECT_TRUE(report::versus_ratio({3, 3}, {2, 2}).surely_more());
+}
+
+}  // namespace
+}  // namespace carousel::versus_command_test
