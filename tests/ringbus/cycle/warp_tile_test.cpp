@@ -197,10 +197,11 @@ TEST(WarpTile, PackingTakesTime) {
   EXPECT_EQ(warm_cycles(scene, config, {3, 3}), (2 + kTest) * strips + 2 * kRecord + kWire);
 }
 
-// Lanes without a ray take nodes of the one that is left, so that it has fewer steps, and all of its strips or more.
+// Lanes without a ray take nodes of the one that is left, so that rays have fewer steps, and all of their strips or more.
+// A single ray may have more: what a helper finds comes before its own nearest child.
 TEST(WarpTile, IdleLanesHelp) {
   TestScene scene = terrain();
-  std::uint64_t fewer = 0;
+  std::uint64_t with = 0, without = 0;
   for (std::size_t ray = 0; ray < 10; ++ray) {
     Config config = warps_of(4);
     config.testers.simt.wait_cycles = 1;
@@ -213,12 +214,12 @@ TEST(WarpTile, IdleLanesHelp) {
       EXPECT_EQ(lone->completed, 1u);
     }
     const WarpCounts a = *alone.result().warps, h = *helped.result().warps;
-    EXPECT_LE(h.steps, a.steps);
     EXPECT_GE(h.tested, a.tested);
     EXPECT_EQ(h.tested, h.steps + h.helped);
-    fewer += h.steps < a.steps;
+    with += h.steps;
+    without += a.steps;
   }
-  EXPECT_GT(fewer, 0u);
+  EXPECT_LT(with, without);
 }
 
 // Entries that the registers do not hold are written, and those that are needed again are read back.

@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "core/config/fields/simt.h"
+#include "core/config/fields/testers.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
