@@ -113,6 +113,8 @@ void add_commands(CLI::App& program, Arguments& arguments) {
                   "keys)");
   CLI::App* stress =
       program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
+  check->add_flag("--json", arguments.check.json,
+                  "Print the same as JSON, and errors with their places too (default: YAML with comments)");
   add_config_options(*stress, arguments.stress, "the queues are tested by themselves");
   add_stress_options(*stress, arguments.stress);
   add_accuracy(program, arguments.accuracy);

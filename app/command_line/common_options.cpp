@@ -42,8 +42,10 @@ void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins, con
 }
 
 void add_strict_option(CLI::App& command, ConfigArguments& arguments) {
-  command.add_flag("--strict", arguments.strict,
-                   "Refuse a configuration that sets keys which the machine ignores (default: they are named)");
+  command.add_flag(
+      "--strict", arguments.strict,
+      "Refuse a configuration that sets keys which the machine ignores; check: also one whose scene is imported "
+      "with warnings (default: they are named)");
 }
 
 }  // namespace carousel::app

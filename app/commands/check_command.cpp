@@ -1,6 +1,8 @@
 #include "app/commands/check_command.h"
 
+#include <exception>
 #include <filesystem>
+#include <optional>
 #include <sstream>
 #include <string>
 
@@ -12,6 +14,7 @@
 #include "app/host/machine_info.h"
 #include "app/host/output.h"
 #include "app/host/required_modules.h"
+#include "app/inspect/check_json.h"
 #include "app/run/memory_need.h"
 #include "app/trace/memory_csv.h"
 #include "core/config/load/load.h"
@@ -107,15 +110,8 @@ int print_graph(const CheckArguments& arguments) {
   return kDone;
 }
 
-}  // namespace
-
-int check_command(const CheckArguments& arguments) {
-  if (arguments.graph) return print_graph(arguments);
-  // A topology that can deadlock gets its verdict here instead of a plain refusal.
-  const Prepared p = prepare(arguments, {.force = true, .ranks = true}, false, [](const Prepared& of) {
-    require_modules(of.config().engine, of.config().workload, of.config().image);
-  });
-  const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config());
+/// The configuration as YAML, and what is known of it as comments.
+std::string check_text(const Prepared& p, const ringbus::DeadlockVerdict& verdict) {
   std::string text;
   if (p.config().workload.kind == WorkloadConfig::Kind::kTraffic) {
     text = "scene: none, synthetic traffic\n";
@@ -137,12 +133,49 @@ int check_command(const CheckArguments& arguments) {
     text += ringbus::parcel_facts(ringbus::plan_parcels(p.config().topology, p.config().memory.line_bytes));
   }
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
-  print_result(resolved_yaml(p.absolute_config()) + "\n" + commented(text));
-  if (!verdict.can_deadlock) return kDone;
+  return resolved_yaml(p.absolute_config()) + "\n" + commented(text);
+}
+
+/// Prints what the command was asked for. Returns the exit status.
+int print_check(const CheckArguments& arguments, const Prepared& p) {
+  const ringbus::DeadlockVerdict verdict = ringbus::deadlock_verdict(p.config());
+  if (arguments.json)
+    print_result(
+        check_json(arguments.config, p, verdict, arguments.strict).dump(2, ' ', false, Json::error_handler_t::replace) +
+        "\n");
+  else
+    print_result(check_text(p, verdict));
+  int status = kDone;
+  if (arguments.strict && !p.warnings.empty()) {
+    spdlog::error("{}: {} of the scene's import, which --strict counts as errors", arguments.config,
+                  p.warnings.size() == 1 ? "a warning" : fmt::format("{} warnings", p.warnings.size()));
+    status = kUsage;
+  }
+  if (!verdict.can_deadlock) return status;
   spdlog::error("{}: {}: the links of this machine can fill up and stop, and run refuses it without --force",
                 arguments.config,
                 p.config().topology.shape == TopologyShape::kGraph ? "topology.links" : "topology.flow");
   return kUsage;
+}
+
+}  // namespace
+
+int check_command(const CheckArguments& arguments) {
+  if (arguments.graph) return print_graph(arguments);
+  // A topology that can deadlock gets its verdict here instead of a plain refusal.
+  std::optional<Prepared> p;
+  try {
+    p.emplace(prepare(arguments, {.force = true, .ranks = true}, false, [](const Prepared& of) {
+      require_modules(of.config().engine, of.config().workload, of.config().image);
+    }));
+  } catch (...) {
+    if (arguments.json)
+      print_result(
+          refusal_json(arguments.config, std::current_exception()).dump(2, ' ', false, Json::error_handler_t::replace) +
+          "\n");
+    throw;
+  }
+  return print_check(arguments, *p);
 }
 
 }  // namespace carousel::app

@@ -22,6 +22,7 @@ const std::vector<Example>& examples() {
       {"sweep", "carousel sweep configs/sweep.yaml --dry-run", "how many points there are and how long they take"},
       {"check", "carousel check configs/demo.yaml",
        "all values with their defaults, the memory needed, deadlock rules"},
+      {"check", "carousel check configs/demo.yaml --json --strict", "the same for a program; warnings are errors"},
       {"check", "carousel check configs/demo.yaml --set topology.flow=none", "a machine that can deadlock: refused"},
       {"stress", "carousel stress --queue spsc_ring,mutex --pattern stream", "two queue designs under one load"},
       {"accuracy", "carousel accuracy configs/demo.yaml", "time and errors of each level of accuracy"},

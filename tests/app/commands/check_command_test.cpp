@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "app/run/memory_need.h"
 #include "core/config/load/load.h"
@@ -12,6 +13,7 @@ namespace {
 using testing::AnyOf;
 using testing::HasSubstr;
 using testing::Not;
+using Json = nlohmann::ordered_json;
 
 TEST(CheckCommand, PrintsTheResolvedConfigTheMemoryAndTheVerdict) {
   const Program program;
@@ -140,6 +142,63 @@ TEST(MemoryNeed, NamesTheKeyThatWeighsMost) {
 TEST(MemoryNeed, KeepingHitsCounts) {
   const Config config = load_config({"scene: {builtin: cornell}\n", "m.yaml"}).config;
   EXPECT_GT(app::estimate_before_scene(config, true).total(), app::estimate_before_scene(config, false).total());
+}
+
+TEST(CheckCommand, PrintsWhatItKnowsAsJson) {
+  const Program program;
+  program.write("a.yaml", "scene: {builtin: cornell}\nimage: {width: 40}\ntopology: {rings: 3}\n");
+  const Outcome outcome = program.run({"check", "a.yaml", "--json"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json json = Json::parse(outcome.out);
+  EXPECT_TRUE(json["valid"]);
+  EXPECT_EQ(json["resolved"]["image"]["width"], 40);
+  EXPECT_EQ(json["deadlock"]["possible"], false);
+  EXPECT_GT(json["scene"]["triangles"], 10);
+  std::uint64_t sum = 0;
+  for (const auto& [part, bytes] : json["memory"]["parts"].items()) sum += bytes.get<std::uint64_t>();
+  EXPECT_EQ(json["memory"]["total_bytes"], sum);
+  ASSERT_EQ(json["ignored_keys"].size(), 1);
+  EXPECT_EQ(json["ignored_keys"][0]["key"], "topology.rings");
+  EXPECT_EQ(json["ignored_keys"][0]["line"], 3);
+}
+
+TEST(CheckCommand, JsonOfARefusalNamesEachPlace) {
+  const Program program;
+  program.write("a.yaml", "scene: {builtin: cornell}\nimage: {width: -1}\ntopology: {resuorces: 4}\n");
+  const Outcome outcome = program.run({"check", "a.yaml", "--json"});
+  EXPECT_EQ(outcome.status, 2);
+  const Json json = Json::parse(outcome.out);
+  EXPECT_FALSE(json["valid"]);
+  ASSERT_EQ(json["errors"].size(), 2);
+  EXPECT_EQ(json["errors"][0]["key"], "image.width");
+  EXPECT_EQ(json["errors"][0]["line"], 2);
+  EXPECT_THAT(json["errors"][1]["message"].get<std::string>(), HasSubstr("topology"));
+  program.write("b.yaml", "scene: {builtin: cornell}\ntopology: {flow: none}\n");
+  const Outcome deadlock = program.run({"check", "b.yaml", "--json"});
+  EXPECT_EQ(deadlock.status, 2);
+  EXPECT_EQ(Json::parse(deadlock.out)["deadlock"]["possible"], true);
+}
+
+TEST(CheckCommand, StrictTakesIgnoredKeysAndWarningsOfTheImportForErrors) {
+  const Program program;
+  program.write("a.yaml", "scene: {builtin: cornell}\ntopology: {rings: 3}\n");
+  EXPECT_EQ(program.run({"check", "a.yaml"}).status, 0);
+  EXPECT_EQ(program.run({"check", "a.yaml", "--strict"}).status, 2);
+  // A mesh without a camera has no warning; an extension that is unknown has one.
+  program.write("a.gltf", R"({"asset": {"version": "2.0"}, "extensionsUsed": ["NOBODY_knows"], "scene": 0,
+    "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}], "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+    "buffers": [{"byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}],
+    "bufferViews": [{"buffer": 0, "byteLength": 36}],
+    "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]}]})");
+  program.write("b.yaml", "scene: {file: a.gltf}\n");
+  const Outcome lax = program.run({"check", "b.yaml", "--json"});
+  ASSERT_EQ(lax.status, 0) << lax.err;
+  const Json json = Json::parse(lax.out);
+  ASSERT_GE(json["warnings"].size(), 1) << lax.out;
+  EXPECT_TRUE(json["valid"]);
+  const Outcome strict = program.run({"check", "b.yaml", "--json", "--strict"});
+  EXPECT_EQ(strict.status, 2);
+  EXPECT_FALSE(Json::parse(strict.out)["valid"]);
 }
 
 }  // namespace
