@@ -24,6 +24,7 @@
 #include "app/run/memory_need.h"
 #include "app/run/ray_census.h"
 #include "app/run/ray_progress.h"
+#include "app/sampled/effects_forecast.h"
 #include "app/sampled/sampled_run.h"
 #include "app/trace/heat_map.h"
 #include "app/trace/memory_csv.h"
@@ -177,9 +178,11 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     report.sampled = estimates(p, job, *places, result, *memory);
     add_sampled_energy(report, p.config());
   }
+  if (result.cycle) foretell_effects(p, job, report);
   if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);
+  judge_forecast(report);
   return report;
 }
 

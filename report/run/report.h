@@ -76,6 +76,7 @@ struct Report {
   std::optional<Traffic> traffic;
   std::optional<MemoryTrace> memory_trace;
   Shading shading;
+  std::optional<Effects> effects;
   std::optional<Energy> energy;
   std::optional<Area> area;
   std::optional<std::vector<CostConstant>> costs;
@@ -135,6 +136,7 @@ void describe(V& v, const Report& r) {
   v.section("traffic", r.traffic, "the network alone, when workload is traffic");
   v.section("memory_trace", r.memory_trace, "the memory alone, when workload is memory_trace");
   v.section("shading", r.shading, "shader workers and effects of light");
+  v.section("effects", r.effects, "what the choice of effects of light was worth (cycle)");
   v.section("energy", r.energy, "energy of the simulated machine, with energy.profile");
   v.section("area", r.area, "area of the simulated machine, with energy.profile");
   v.section("costs", r.costs, "every number of energy and area, with its source");

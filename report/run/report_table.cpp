@@ -9,6 +9,7 @@
 #include "report/run/part_table.h"
 #include "report/run/sampled_table.h"
 #include "report/run/verdict_table.h"
+#include "report/text/fit_lines.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 
@@ -40,6 +41,11 @@ class Items {
     fmt::format_to(std::back_inserter(text_), "{}{} {}", text_.empty() ? "" : "   ", name, value);
   }
   const std::string& text() const { return text_; }
+
+  /// On lines of some 110 columns, the first of which begins with a name.
+  void lines(Table& table, std::string_view name) const {
+    table.text(fit_lines(fmt::format("{:<13}{}\n", name, text_), 113));
+  }
 
  private:
   std::string text_;
@@ -103,7 +109,7 @@ void resource_lines(Table& table, const std::vector<Resource>& resources) {
   for (const Resource& r : resources) stalls += *r.stalls;
   Items items;
   for (const Counter<StallCounts>& row : kCounters<StallCounts>) items.add(row.name, grouped(row.value(stalls)));
-  table.line("stalls", "{}", items.text());
+  items.lines(table, "stalls");
 }
 
 void link_line(Table& table, const std::vector<Link>& links) {
@@ -149,7 +155,7 @@ void test_line(Table& table, const Tests& t) {
   using C = IntersectionCounts;
   const auto per_ray = [&](std::uint64_t count) { return fmt::format("{:.2f}", ratio(count, t.rays)); };
   Items items;
-  items.add("box", per_ray(t.counts.box));
+  items.add("per ray: box", per_ray(t.counts.box));
   items.add("triangle", per_ray(t.counts.triangle));
   items.add("transform", per_ray(t.counts.transforms));
   for (const Counter<C>& row : kCounters<C>) {
@@ -157,7 +163,7 @@ void test_line(Table& table, const Tests& t) {
     if (row.shown == Shown::kAlways ? row.value(t.counts) > 0 : t.features.show(row.shown))
       items.add(row.name, per_ray(row.value(t.counts)));
   }
-  table.line("tests", "per ray: {}", items.text());
+  items.lines(table, "tests");
   if (!t.bundles) return;
   const BundleCounts b = t.bundles->sum().counts;
   const auto part = [&](std::uint64_t lanes) { return percent(ratio(lanes, b.all + b.none + b.split)); };
@@ -240,7 +246,7 @@ void cycle_lines(Table& table, const Report& report) {
   busy.add("dispatch", part(dispatch));
   busy.add("shading", percent(report.shading.utilisation.value_or(0)));
   busy.add("DRAM", percent(report.memory ? report.memory->dram_utilisation : 0));
-  table.line("busy", "{}", busy.text());
+  busy.lines(table, "busy");
   const UnitCycles& sum = sums[UnitKind::kBox];  // all kinds wait together
   table.line("testers wait", "memory {}   link {}   credits {}   storage {}   nothing to test {}{}", part(sum.memory),
              part(sum.link), part(sum.credits), part(sum.storage), part(sum.idle),
@@ -282,8 +288,8 @@ void energy_lines(Table& table, const Report& report) {
   Parts::for_each([&]<class P>(std::size_t i) {
     if (a.parts.declared[i]) items.add(P::kName, percent(ratio(a.parts.declared[i]->mm2, a.mm2)));
   });
-  table.line("area", "{:.4g} mm2   {:.4g} Mrays/s on each   {}", a.mm2, a.mrays_per_second_per_mm2.value_or(0),
-             items.text());
+  table.line("area", "{:.4g} mm2   {:.4g} Mrays/s on each", a.mm2, a.mrays_per_second_per_mm2.value_or(0));
+  items.lines(table, "");
 }
 
 std::string image_text(const nlohmann::ordered_json& config) {
@@ -377,6 +383,7 @@ std::string report_table(const Report& report) {
   if (report.tests) test_line(table, *report.tests);
   if (report.cull_planes) cull_plane_lines(table, report);
   packet_lines(table, report);
+  if (report.effects && report.effects->spared) table.text(spared_table(*report.effects->spared));
   if (report.shading.proof) proof_line(table, *report.shading.proof);
   if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
   if (report.links && !report.links->empty()) link_line(table, *report.links);

@@ -227,6 +227,11 @@ void packet_words(Words& w) {
             "most collections that any resource had at one time, and most ray IDs")
       .item("N spilled", "collections.spilled")
       .item("N ray IDs in all resources at once, of every N cycles", "collections.ids_at_once");
+  w.line("effects")
+      .item("spared N of the cycles: all effects would cost N cycles (N to N)", "effects.spared",
+            "forecast of what the same frame would take if every effect of light were computed at every surface")
+      .item("measured N cycles, foretold to N", "effects.spared.measured",
+            "cycles of a run with all effects, with verify: effects, and by how much the forecast misses them");
   w.line("all effects")
       .item("hits *", "shading.proof.same_hits")
       .item("image *", "shading.proof.same_image")

@@ -1,5 +1,8 @@
 #include "report/run/verdict_table.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
@@ -7,7 +10,13 @@
 namespace carousel::report {
 
 std::string verdict_table(const Bottleneck& found) {
-  std::string out = fmt::format("{:<13}{}\n", "bottleneck", found.verdict);
+  // Facts of the verdict stand between semicolons: a line each.
+  std::string out;
+  for (std::size_t begin = 0; begin <= found.verdict.size();) {
+    const std::size_t end = std::min(found.verdict.find("; ", begin), found.verdict.size());
+    out += fmt::format("{:<13}{}\n", out.empty() ? "bottleneck" : "", found.verdict.substr(begin, end - begin));
+    begin = end + 2;
+  }
   if (found.rays > 0 && !found.whole_frame)
     out += fmt::format("{:<13}by {} of the frame's rays, which foretell its cycles to {:+.1f} %\n", "",
                        grouped(found.rays), 100 * found.deviation);
@@ -18,6 +27,16 @@ std::string verdict_table(const Bottleneck& found) {
         percent(phase.begin), percent(phase.end), percent(phase.time),
         phase.limits.empty() ? "no class alone"
                              : fmt::format("{}, {} gains {}", phase.limits, phase.action, percent(phase.gain)));
+  return out;
+}
+
+std::string spared_table(const EffectsSpared& spared) {
+  std::string out =
+      fmt::format("{:<13}spared {} of the cycles: all effects would cost {} cycles ({} to {})\n", "effects",
+                  percent(spared.fraction), grouped(spared.cycles_with_all), grouped(spared.low), grouped(spared.high));
+  if (spared.measured)
+    out += fmt::format("{:<13}measured {} cycles, foretold to {:+.1f} %\n", "", grouped(*spared.measured),
+                       100 * spared.error.value_or(0));
   return out;
 }
 

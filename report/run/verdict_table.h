@@ -3,10 +3,14 @@
 #include <string>
 
 #include "report/sections/bottleneck.h"
+#include "report/sections/shading.h"
 
 namespace carousel::report {
 
 /// The lines of a run's table about what limits the machine, each with its end.
 std::string verdict_table(const Bottleneck& found);
+
+/// The lines about the cycles that the choice of effects spared, each with its end.
+std::string spared_table(const EffectsSpared& spared);
 
 }  // namespace carousel::report

@@ -171,4 +171,38 @@ void describe(V& v, const Shading& r) {
   v.section("classes", r.classes, "materials of triangles by the code that shades them");
 }
 
+/// The cycles that the effects plan spares: what the same frame would take if the shaders computed all effects of light
+/// at every surface (`shading.effects: all`). A forecast from the table of products, and with `verify: effects` the
+/// cycles that a second run took.
+struct EffectsSpared {
+  double products_per_ray = 0;
+  std::uint64_t shader_cycles = 0, cycles_with_all = 0, low = 0, high = 0;
+  double fraction = 0;
+  std::optional<std::uint64_t> measured{};
+  std::optional<double> error{};
+};
+
+template <class V>
+void describe(V& v, const EffectsSpared& r) {
+  v.field("products_per_ray", r.products_per_ray, "products",
+          "products of the shader for each completed ray that all effects would need more");
+  v.field("shader_cycles", r.shader_cycles, "cycles", "cycles of all shader workers together that these would take");
+  v.field("cycles_with_all", r.cycles_with_all, "cycles", "forecast of the cycles of the frame with all effects");
+  v.field("low", r.low, "cycles", "the least that it can be: shaders work beside all other parts");
+  v.field("high", r.high, "cycles", "the most that is expected: all parts wait while shaders work longer");
+  v.field("fraction", r.fraction, "fraction", "part of the forecast cycles that the plan spared");
+  v.field("measured", r.measured, "cycles", "cycles of the frame with all effects, with verify: effects");
+  v.field("error", r.error, "fraction", "forecast over the measured cycles, less one");
+}
+
+/// The choice of effects, and what it was worth.
+struct Effects {
+  std::optional<EffectsSpared> spared{};
+};
+
+template <class V>
+void describe(V& v, const Effects& r) {
+  v.section("spared", r.spared, "cycles spared, by forecast; absent if a list leaves effects out");
+}
+
 }  // namespace carousel::report

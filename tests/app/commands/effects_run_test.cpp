@@ -1,3 +1,5 @@
+#include <cmath>
+
 #include <gmock/gmock.h>
 #include <nlohmann/json.hpp>
 
@@ -38,6 +40,7 @@ TEST(EffectsRun, AllGivesTheSamePictureOnBothEnginesAndTheReportSaysWhatAutoSave
     EXPECT_EQ(least["shading"]["effects"].size(), kEffects);
     EXPECT_GT(least["shading"]["saved"]["path_state_bytes"], 0);
     EXPECT_EQ(most["shading"]["saved"]["path_state_bytes"], 0);
+    EXPECT_FALSE(most.contains("effects")) << "nothing is spared";
   }
 }
 
@@ -70,6 +73,16 @@ TEST(EffectsRun, AProofRunsItAgainWithAllAndSaysWhatDiffers) {
     EXPECT_LE(seconds["median"], seconds["most"]);
   }
   EXPECT_LE(proof["time_ratio"]["least"], proof["time_ratio"]["median"]);
+
+  // The forecast from the table of products, and the run that proves it: shaders limit this machine.
+  const Json& spared = report["effects"]["spared"];
+  EXPECT_EQ(spared["measured"], proof["all"]["cycles"]);
+  EXPECT_GE(spared["low"], report["engine"]["cycles"]);
+  EXPECT_LE(spared["low"], spared["cycles_with_all"]);
+  EXPECT_LE(spared["cycles_with_all"], spared["high"]);
+  EXPECT_GT(spared["fraction"], 0.4);
+  EXPECT_LT(std::abs(spared["error"].get<double>()), 0.1);
+  EXPECT_THAT(outcome.out, HasSubstr("effects      spared "));
 
   EXPECT_EQ(program.run({"run", "small.yaml", "--set", "shading.effects=all"}).status, 2);
 }
