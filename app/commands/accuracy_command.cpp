@@ -23,7 +23,7 @@
 #include "core/types/enum_names.h"
 #include "report/accuracy/accuracy_summary.h"
 #include "report/accuracy/accuracy_table.h"
-#include "report/html/study_pages.h"
+#include "report/html/studies/study_pages.h"
 #include "report/read/document.h"
 #include "report/text/progress_line.h"
 #include "ringbus/verdict/what_if.h"

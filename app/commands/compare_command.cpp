@@ -12,7 +12,7 @@
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "report/compare/comparison.h"
-#include "report/html/compare_page.h"
+#include "report/html/studies/compare_page.h"
 #include "report/read/document.h"
 #include "report/run/report_difference.h"
 #include "ringbus/cycle/cycle_engine.h"

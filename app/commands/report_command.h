@@ -1,9 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-
-#include <nlohmann/json.hpp>
 
 namespace carousel::app {
 
@@ -12,9 +9,6 @@ struct ReportArguments {
   std::string point;   ///< digest of a point of the sweep in the folder; empty: the page of the folder itself
   std::string out;     ///< page to write; empty: beside that file
 };
-
-/// report.html of a run whose picture, if it has one, is `folder`/image.png.
-std::string run_page_of(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
 
 /// `carousel report`: makes a page again from report.json and image.png of a run, or of another command's JSON; those
 /// of all results of a folder that run, accuracy and stress share. Returns the exit status.

@@ -23,7 +23,7 @@
 #include "core/system/error.h"
 #include "core/text/edit_distance.h"
 #include "core/types/added_names.h"
-#include "report/html/study_pages.h"
+#include "report/html/studies/study_pages.h"
 #include "report/read/document.h"
 #include "report/run/report_json.h"
 #include "report/stress/stress_table.h"

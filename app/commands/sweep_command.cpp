@@ -22,7 +22,7 @@
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "core/system/unfinished.h"
-#include "report/html/sweep_page.h"
+#include "report/html/studies/sweep_page.h"
 #include "report/read/document.h"
 #include "report/text/number_text.h"
 

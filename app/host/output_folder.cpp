@@ -28,14 +28,9 @@ namespace {
 constexpr const char* kConfigFile = "config.resolved.yaml";  // all commands write it
 
 /// The files of a command, by Results; the first is its result, which appears last. A run also has pictures.
-<<<<<<< HEAD
-constexpr std::array<std::array<std::string_view, 8>, 3> kFiles{{
+constexpr std::array<std::array<std::string_view, 8>, 4> kFiles{{
     {"report.json", "report.html", "hits.csv", "heat.csv", "heat_cycles.png", "heat_tests.png", "heat_hops.png",
      "heat_waiting.png"},
-=======
-constexpr std::array<std::array<std::string_view, 3>, 4> kFiles{{
-    {"report.json", "report.html", "hits.csv"},
->>>>>>> 16a8d9b9 (app: compare a machine with its conventional twin)
     {"accuracy.json", "accuracy.html"},
     {"stress.json", "stress.html"},
     {"versus.json", "versus.html"},

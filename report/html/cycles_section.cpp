@@ -2,6 +2,7 @@
 #include <array>
 #include <map>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -50,9 +51,13 @@ Shares shares_of(const Json& unit, double cycles) {
 
 Shares busy_and_idle(double busy, double waits = 0) {
   Shares out{};
-  out[0] = busy;
-  out[3] = waits;
-  out[kUseCount - 1] = std::max(0.0, 1 - busy - waits);
+  const auto set = [&](std::string_view key, double value) {
+    for (std::size_t u = 0; u < kUseCount; ++u)
+      if (key == kUses[u].key) out[u] = value;
+  };
+  set("busy", busy);
+  set("link", waits);
+  set("idle", std::max(0.0, 1 - busy - waits));
   return out;
 }
 
@@ -75,20 +80,12 @@ void add_units(Table& table, const Json& resources, double cycles) {
   add(table, "dispatch", busy_and_idle(dispatch));
 }
 
-}  // namespace
-
-Html cycles_section(const Json& report) {
+Table parts_table(const Json& report) {
   const double cycles = number_at(report, "engine.cycles");
   const Json* resources = find(report, "resources");
-  if (cycles <= 0) return {};
   Table parts = table_of_uses("cycles-by-part", "Use of the cycles by kind of part", "part");
-  Table each = table_of_uses("cycles-by-resource", "Use of the cycles of the box units, by resource", "resource");
-  if (resources && !resources->empty() && resources->front().contains("units")) {
-    add_units(parts, *resources, cycles);
-    for (const Json& r : *resources)
-      if (const Json* box = find(r, "units.box"))
-        add(each, fmt::format("resource {}", value_text(r["resource"])), shares_of(*box, cycles));
-  }
+  if (cycles <= 0) return parts;
+  if (resources && !resources->empty() && resources->front().contains("units")) add_units(parts, *resources, cycles);
   if (const Json* links = find(report, "links"); links && !links->empty() && links->front().contains("cycles")) {
     double busy = 0, stalled = 0;
     for (const Json& link : *links) {
@@ -106,6 +103,26 @@ Html cycles_section(const Json& report) {
   if (find(report, "memory")) add(parts, "DRAM", busy_and_idle(number_at(report, "memory.dram_utilisation")));
   if (find(report, "shading.utilisation"))
     add(parts, "shader workers", busy_and_idle(number_at(report, "shading.utilisation")));
+  return parts;
+}
+
+}  // namespace
+
+Html still_cycles(const Json& report) {
+  const Table parts = parts_table(report);
+  return parts.rows.empty() ? Html() : still_stack(parts);
+}
+
+Html cycles_section(const Json& report) {
+  const double cycles = number_at(report, "engine.cycles");
+  const Json* resources = find(report, "resources");
+  if (cycles <= 0) return {};
+  const Table parts = parts_table(report);
+  Table each = table_of_uses("cycles-by-resource", "Use of the cycles of the box units, by resource", "resource");
+  if (resources && !resources->empty() && resources->front().contains("units"))
+    for (const Json& r : *resources)
+      if (const Json* box = find(r, "units.box"))
+        add(each, fmt::format("resource {}", value_text(r["resource"])), shares_of(*box, cycles));
   if (parts.rows.empty()) return {};
   Html out =
       markup("<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it.</p>\n");
@@ -117,7 +134,8 @@ Html cycles_section(const Json& report) {
                 .tables = parts.id,
                 .title = parts.caption,
                 .label = "Stacked bars, a bar a kind of part: the shares of its cycles, which add up to 100 percent.",
-                .height = height(parts)}
+                .height = height(parts),
+                .still = still_stack(parts)}
              .html();
   out += parts.html();
   if (each.rows.size() > 1) {
@@ -126,7 +144,8 @@ Html cycles_section(const Json& report) {
                   .tables = each.id,
                   .title = each.caption,
                   .label = "Stacked bars, a bar a resource: the shares of the cycles of its box units.",
-                  .height = height(each)}
+                  .height = height(each),
+                  .still = still_stack(each)}
                .html();
     out += each.html();
   }
@@ -209,7 +228,8 @@ Html waits_section(const Json& report) {
                 .tables = sums.id,
                 .title = sums.caption,
                 .label = fmt::format("Bars, longest first: {} is the greatest cause of waiting.", ranked.front().first),
-                .height = 90 + 34 * static_cast<int>(sums.rows.size())}
+                .height = 90 + 34 * static_cast<int>(sums.rows.size()),
+                .still = still_bars(sums, 1)}
              .html();
   return out + sums.html() + each.html();
 }

@@ -1,3 +1,8 @@
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "report/html/html.h"
@@ -7,40 +12,70 @@ namespace carousel::report::html {
 
 namespace {
 
-/// The parts of energy or area as one bar, and a table of them.
+/// A column of the table of parts: its title and what its numbers are multiplied with, so that they are readable.
+struct PartColumn {
+  std::string title;
+  double times = 1;
+};
+PartColumn part_column(const std::string& key) {
+  if (key == "joules") return {"energy, mJ", 1e3};
+  if (key == "nj_per_ray") return {"nJ a ray"};
+  if (key == "pj_each") return {"pJ each"};
+  if (key == "mm2") return {"area, mm²"};
+  return {words(key)};
+}
+
+/// The parts of energy or area as one bar, and a table of them. The bar has a colour for each part that is seen in it;
+/// what is less stands together.
 Html parts_of(const Json& report, const Json& schema, const std::string& section, const char* value,
               const char* title) {
+  constexpr std::size_t kColours = 10;
   const double all = number_at(report, section + "." + value);
   const Json* parts = find(report, section + ".parts");
   if (!parts || all <= 0) return {};
   Table shares{section + "-shares", std::string("Shares: ") + title, {{"of"}}},
       table{section + "-parts", title, {{"part"}}};
   const Json& meanings = schema_at(schema, "properties." + section + ".properties.parts");
-  bool named = false;
-  shares.rows.push_back({cell("the machine")});
+  std::vector<std::pair<double, std::string>> sizes;
   for (const auto& [key, part] : parts->items()) {
-    if (number_at(part, value) <= 0) continue;
-    shares.columns.push_back({words(key), "", "share"});
-    shares.rows.front().push_back(share(number_at(part, value) / all));
+    const double amount = number_at(part, value);
+    if (amount <= 0) continue;
+    sizes.emplace_back(amount, words(key));
     auto& row = table.rows.emplace_back();
     row.push_back(cell(words(key)));
     for (const auto& [name, number] : part.items()) {
-      if (!named) table.columns.push_back({words(name)});
-      row.push_back(cell(number));
+      const PartColumn column = part_column(name);
+      if (table.rows.size() == 1) table.columns.push_back({column.title});
+      row.push_back(column.times == 1 ? cell(number) : cell(Json(column.times * number.get<double>())));
     }
-    named = true;
-    row.push_back(share(number_at(part, value) / all));
+    row.push_back(share(amount / all));
     row.push_back(cell(text_at(schema_at(meanings, "properties." + key), "description")));
   }
   table.columns.push_back({"share"});
   table.columns.push_back({"meaning"});
+  std::stable_sort(sizes.begin(), sizes.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  shares.rows.push_back({cell("the machine")});
+  double rest = 0;
+  for (std::size_t i = 0; i < sizes.size(); ++i) {
+    if (i >= kColours && sizes.size() > kColours + 1) {
+      rest += sizes[i].first;
+      continue;
+    }
+    shares.columns.push_back({sizes[i].second, "", "share"});
+    shares.rows.front().push_back(share(sizes[i].first / all));
+  }
+  if (rest > 0) {
+    shares.columns.push_back({"all others", "", "share"});
+    shares.rows.front().push_back(share(rest / all));
+  }
   return Figure{.id = "fig-" + section,
                 .kind = "stacked",
                 .tables = shares.id,
                 .title = title,
                 .label = fmt::format("A stacked bar: the shares of the parts, which add up to 100 percent of the {}.",
                                      section),
-                .height = 180}
+                .height = 180,
+                .still = still_stack(shares)}
              .html() +
          shares.html() + table.html();
 }

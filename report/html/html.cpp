@@ -3,16 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::report::html {
 
 namespace {
-
-constexpr std::size_t kFoldedRows = 12;
 
 std::string with_sign(std::int64_t value) {
   // Without an overflow for the least number.
@@ -23,7 +24,15 @@ std::string real_text(double value) {
   const double size = std::abs(value);
   if (!(size < 0x1p53)) return fmt::format("{:.4g}", value);
   if (size >= 1000) return with_sign(std::llround(value));
+  if (size != 0 && size < 0.001) return fmt::format("{:.3g}", value);
   return fmt::format("{:.{}f}", value, size >= 100 || size == 0 ? 1 : size >= 0.1 ? 2 : 5);
+}
+
+/// Of a unit that depends on the engine, such as attempts|cycles, the one of a row: only a simulated one has cycles.
+std::string one_unit(const std::string& unit, const Json& row) {
+  const std::size_t bar = unit.find('|');
+  if (bar == unit.npos) return unit;
+  return row.contains("cycles") || row.contains("units") ? unit.substr(bar + 1) : unit.substr(0, bar);
 }
 
 void add_values(Table& table, const std::string& path, const Json& value, const Json& schema) {
@@ -45,6 +54,10 @@ std::string words(std::string_view key) {
   std::string out(key);
   for (char& c : out)
     if (c == '_') c = ' ';
+  // Abbreviations are written as their field does.
+  for (const auto& [small, great] : {std::pair{"dram", "DRAM"}, {"l1", "L1"}, {"l2", "L2"}})
+    if (out == small || out.starts_with(small + std::string(" ")))
+      out.replace(0, std::string_view(small).size(), great);
   return out;
 }
 
@@ -93,10 +106,6 @@ Cell share(double fraction) {
   return {percent(fraction), fraction};
 }
 
-bool Table::folded() const {
-  return rows.size() > kFoldedRows;
-}
-
 Html Table::html() const {
   if (rows.empty()) return {};
   std::vector<bool> numbers(columns.size(), false);
@@ -104,7 +113,9 @@ Html Table::html() const {
     for (const auto& row : rows) numbers[c] = numbers[c] || (c < row.size() && !row[c].number.is_null());
   const auto number_class = [](bool number) { return number ? markup(" class=\"n\"") : Html(); };
   Html out;
-  if (folded()) out += markup("<details><summary>Table: {} ({} rows)</summary>\n", caption, rows.size());
+  if (!open)
+    out +=
+        markup("<details><summary>Table: {} ({})</summary>\n", caption, singular(fmt::format("{} rows", rows.size())));
   out += markup(
       "<div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-label=\"{}\"><table "
       "id=\"table-{}\"><caption>{}</caption>\n"
@@ -127,7 +138,7 @@ Html Table::html() const {
     out += markup("</tr>\n");
   }
   out += markup("</tbody></table></div>\n");
-  if (folded()) out += markup("</details>\n");
+  if (!open) out += markup("</details>\n");
   return out;
 }
 
@@ -139,7 +150,7 @@ Table table_of(std::string id, std::string caption, const Json& list, const Json
   for (const auto& [key, value] : list.front().items()) {
     if (value.is_structured() || std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
     const Json* about = find(item_schema, "properties." + key);
-    const std::string unit = about ? about->value("unit", "") : "";
+    const std::string unit = one_unit(about ? about->value("unit", "") : "", list.front());
     keys.push_back(key);
     table.columns.push_back({words(key), unit == "fraction" ? "" : unit, about ? about->value("description", "") : ""});
   }
@@ -172,8 +183,9 @@ int bars_height(const Table& table) {
 Html Figure::html() const {
   return markup(
       "<figure id=\"{}\" data-chart=\"{}\" data-tables=\"{}\"><figcaption>{}{}</figcaption>"
-      "<div class=\"plot\" role=\"img\" aria-label=\"{}\" style=\"height:{}px\"></div></figure>\n",
-      id, kind, tables, title, note.empty() ? Html() : markup(" <small>{}</small>", note), label, height);
+      "<div class=\"plot\" role=\"img\" aria-label=\"{}\" style=\"height:{}px\"></div>{}</figure>\n",
+      id, kind, tables, title, note.empty() ? Html() : markup(" <small>{}</small>", note), label, height,
+      still.empty() ? Html() : markup("<div class=\"still\">{}</div>", still));
 }
 
 }  // namespace carousel::report::html

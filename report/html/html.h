@@ -50,8 +50,8 @@ struct Table {
   std::vector<Column> columns{};
   std::vector<std::vector<Cell>> rows{};
 
-  /// More than a dozen rows are folded away until they are asked for.
-  bool folded() const;
+  /// Tables are closed until they are asked for, but for those that are the answer themselves.
+  bool open = false;
   /// Nothing if there are no rows.
   Html html() const;
 };
@@ -76,6 +76,7 @@ struct Figure {
   std::string id, kind, tables, title, label;
   std::string note{};
   int height = 320;  ///< pixels
+  Html still{};      ///< what stands there without scripts
   Html html() const;
 };
 

@@ -9,17 +9,6 @@ namespace carousel::report::html {
 
 namespace {
 
-/// The greatest share of the cycles that a kind of unit of the resource was busy; without a clock, the rays that it
-/// tested over those of the resource that tested most.
-double use_of(const Json& resource, double cycles, double most_tested) {
-  const Json* units = find(resource, "units");
-  if (!units) return most_tested > 0 ? number_at(resource, "rays_tested") / most_tested : 0;
-  double busy = 0;
-  for (const auto& [kind, unit] : units->items())
-    if (unit.is_object()) busy = std::max(busy, number_at(unit, "busy"));
-  return cycles > 0 ? busy / cycles : 0;
-}
-
 /// The row of a list in which a number is greatest.
 const Json& greatest(const Json& rows, const char* key) {
   return *std::max_element(rows.begin(), rows.end(),
@@ -69,7 +58,7 @@ Html machine_section(const Json& report, const Json& schema) {
                                 timed ? "greatest share of the cycles in which a kind of its units was busy"
                                       : "rays tested, over those of the resource that tested most"});
     for (std::size_t i = 0; i < resources->size(); ++i) {
-      const double use = use_of((*resources)[i], cycles, most_tested);
+      const double use = use_of_resource((*resources)[i], cycles, most_tested);
       table.rows[i].insert(table.rows[i].begin() + 1, share(use));
       if (use > most) busiest = fmt::format("resource {}", table.rows[i][0].text);
       most = std::max(most, use);
@@ -113,13 +102,15 @@ Html machine_section(const Json& report, const Json& schema) {
     tables += table.html();
   }
   if (tables.empty()) return {};
+  if (text_at(report, "config.topology.shape") == "central") return out + still_machine(report) + tables;
   out += Figure{.id = "fig-machine",
                 .kind = "machine",
                 .tables = "resources links",
                 .title = "The machine, coloured by use",
                 .label = fmt::format("Drawing of the machine: {}. The tables below have the use of each part.",
                                      machine_words(report)),
-                .height = 460}
+                .height = 460,
+                .still = still_machine(report)}
              .html();
   return out + tables;
 }

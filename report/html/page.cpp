@@ -1,5 +1,7 @@
 #include "report/html/page.h"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "core/numeric/sha256.h"
@@ -21,13 +23,30 @@ Html no_charts() {
 
 Html no_scripts() {
   return markup(
-      "<noscript><p class=\"notice\">Charts need scripts, which this browser does not run. Every number of the charts "
+      "<noscript><p class=\"notice\">Some charts need scripts, which this browser does not run. Every number of them "
       "stands in the tables.</p></noscript>\n");
 }
 
 std::string source_of(std::string_view text) {
   const auto digest = sha256(text);
   return "'sha256-" + base64({reinterpret_cast<const char*>(digest.data()), digest.size()}) + "'";
+}
+
+/// The navigation: a link for each tab, to the first of its sections, and for each section that stands outside of tabs.
+Html links_of(const std::vector<Section>& sections) {
+  Html out;
+  std::vector<std::string> tabs;
+  const bool tabbed = std::any_of(sections.begin(), sections.end(), [](const Section& s) { return !s.tab.empty(); });
+  for (const Section& section : sections) {
+    if (section.body.empty() || std::find(tabs.begin(), tabs.end(), section.tab) != tabs.end()) continue;
+    if (section.tab.empty()) {
+      if (!tabbed) out += markup("<li><a href=\"#{}\">{}</a></li>\n", section.id, section.title);
+      continue;
+    }
+    tabs.push_back(section.tab);
+    out += markup("<li><a href=\"#{}\" data-tab=\"{}\">{}</a></li>\n", section.id, section.tab, section.tab);
+  }
+  return out;
 }
 
 /// Charts set style attributes of their own elements, which a hash cannot name.
@@ -56,14 +75,15 @@ std::string page_of(const std::string& title, const std::string& subtitle, const
       "</head>\n<body>\n<a class=\"skip\" href=\"#content\">Skip to the "
       "report</a>\n<header><h1>{}</h1>\n<p>{}</p>\n<nav aria-label=\"Sections\"><ul>\n",
       title, subtitle);
-  for (const Section& section : sections)
-    if (!section.body.empty()) body += markup("<li><a href=\"#{}\">{}</a></li>\n", section.id, section.title);
+  body += links_of(sections);
   body += markup("</ul></nav></header>\n<main id=\"content\" tabindex=\"-1\">\n");
   body += script.empty() ? no_charts() : no_scripts();
   for (const Section& section : sections)
     if (!section.body.empty())
-      body += markup("<section id=\"{0}\" aria-labelledby=\"{0}-title\"><h2 id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
-                     section.id, section.title, section.body);
+      body += markup(
+          "<section id=\"{0}\" data-tab=\"{3}\" aria-labelledby=\"{0}-title\"><h2 "
+          "id=\"{0}-title\">{1}</h2>\n{2}</section>\n",
+          section.id, section.title, section.body, section.tab);
   body += markup("</main>\n<footer><p>Written by Carousel. The page needs no network.</p></footer>\n");
   if (!script.empty()) body += json_script("facts", facts) + data;
   // The program's own style and scripts are the only text that goes into a page without being escaped.

@@ -18,7 +18,8 @@ struct Picture {
 /// A part of a page, with a heading of its own.
 struct Section {
   std::string id, title;
-  Html body;  ///< a section with an empty one is left out
+  Html body;          ///< a section with an empty one is left out
+  std::string tab{};  ///< the tab that shows it; empty: it always stands there
 };
 
 /// A whole page in one file: head, style, navigation, sections, data, scripts. `facts` is what the scripts need beside

@@ -1,17 +1,21 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "report/html/page.h"
+#include "report/html/still.h"
 
 namespace carousel::report::html {
 
 // The bodies of the sections of a run's page, in its order. Each takes a checked report and gives HTML, or nothing if
 // the report has nothing to show. `schema` is report_schema().
 
-Html verdict_section(const nlohmann::ordered_json& report, const Picture& picture);
+/// One screen: what limits the machine, why, what to change, what a ray costs.
+Html answers_section(const nlohmann::ordered_json& report, const Picture& picture);
+Html verdict_section(const nlohmann::ordered_json& report);
 Html sampled_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html machine_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html cycles_section(const nlohmann::ordered_json& report);
@@ -32,6 +36,17 @@ Html effects_section(const nlohmann::ordered_json& report);
 Html accuracy_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html configuration_section(const nlohmann::ordered_json& report);
 Html values_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
+
+// Pieces that several of them show.
+
+/// The class of parts that limits the machine, with the interval of its gain, or why there is none.
+std::string verdict_sentence(const nlohmann::ordered_json& report);
+/// The class that limits the machine when, if it is not always the same.
+std::string phases_text(const nlohmann::ordered_json& report);
+/// The gains of all classes, for still_gains().
+std::vector<StillGain> still_gains_of(const nlohmann::ordered_json& report);
+/// The use of the cycles by kind of part, as bars.
+Html still_cycles(const nlohmann::ordered_json& report);
 
 /// The machine in words: "8 resources in a ring".
 std::string machine_words(const nlohmann::ordered_json& report);

@@ -4,15 +4,12 @@
 #include <fmt/format.h>
 
 #include "report/html/html.h"
-#include "report/html/packed_series.h"
 #include "report/html/run_sections.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::report::html {
 
-namespace {
-
-/// The class of parts that limits the machine, with the interval of its gain; in the native engine, why there is none.
 std::string verdict_sentence(const Json& report) {
   const Json* bottleneck = find(report, "bottleneck");
   const std::string limits = bottleneck ? text_at(*bottleneck, "limits") : "";
@@ -20,7 +17,7 @@ std::string verdict_sentence(const Json& report) {
     for (const Json& gain : (*bottleneck)["gains"]) {
       if (text_at(gain, "name") != limits) continue;
       const double low = number_at(gain, "low"), high = number_at(gain, "high");
-      std::string out = fmt::format("{} limits this machine: {} gains {:+.1f} %", words(limits),
+      std::string out = fmt::format("this machine is limited by {}: {} gains {:+.1f} %", words(limits),
                                     text_at(gain, "action"), 100 * number_at(gain, "gain"));
       out += fmt::format(" (95 % of confidence, other seeds of the picture included: {:+.1f} % to {:+.1f} %)",
                          100 * low, 100 * high);
@@ -53,7 +50,6 @@ std::string verdict_sentence(const Json& report) {
          "can be named as its limit. The cycle engine names it: --set engine.kind=cycle.";
 }
 
-/// Which part limits the machine when, if it is not always the same.
 std::string phases_text(const Json& report) {
   const Json* phases = find(report, "bottleneck.phases");
   std::string out;
@@ -68,8 +64,10 @@ std::string phases_text(const Json& report) {
   return out;
 }
 
+namespace {
+
 void fact(Html& out, std::string_view name, const std::string& value) {
-  if (!value.empty()) out += markup("<div><dt>{}</dt><dd>{}</dd></div>\n", name, value);
+  if (!value.empty()) out += markup("<div><dt>{}</dt><dd>{}</dd></div>\n", name, singular(value));
 }
 
 std::string throughput_text(const Json& report) {
@@ -86,37 +84,21 @@ std::string throughput_text(const Json& report) {
   return scaled(number_at(report, "host.rays_per_second")) + "rays/s on this host";
 }
 
-Html picture_html(const Json& report, const Picture& picture) {
-  if (picture.mime_type.empty()) return {};
-  const auto side = [&](const char* key) {
-    return static_cast<int>(std::clamp(number_at(report, std::string("config.image.") + key), 0.0, 1e6));
-  };
-  return markup(
-      "<img src=\"data:{};base64,{}\" width=\"{}\" height=\"{}\" alt=\"Picture of the scene {} that this run rendered, "
-      "{} "
-      "by {} pixels with {} samples each\">\n",
-      picture.mime_type, base64(picture.bytes), side("width"), side("height"), text_at(report, "scene.name"),
-      side("width"), side("height"), side("samples"));
-}
-
 }  // namespace
 
 std::string machine_words(const Json& report) {
   const std::string shape = words(text_at(report, "config.topology.shape", "ring"));
   const Json* count = find(report, "config.topology.resources");
-  std::string out = fmt::format("{} resources, {}", count ? value_text(*count) : "0", shape);
+  std::string out = singular(fmt::format("{} resources, {}", count ? value_text(*count) : "0", shape));
   if (shape == "multi ring") out += fmt::format(" of {}", number_at(report, "config.topology.rings"));
   if (shape == "hierarchical") out += fmt::format(" of {} groups", number_at(report, "config.topology.groups"));
   return out + fmt::format(", {} engine", text_at(report, "engine.kind"));
 }
 
-Html verdict_section(const Json& report, const Picture& picture) {
+Html verdict_section(const Json& report) {
   Html out;
-  if (report.value("incomplete", false))
-    out += markup(
-        "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n");
-  out += markup("<div class=\"glance\">\n{}<div>\n<p class=\"verdict\">{}</p>\n<dl>\n", picture_html(report, picture),
-                verdict_sentence(report));
+  out += markup("<dl>\n");
+  fact(out, "Verdict", verdict_sentence(report));
   fact(out, "Phases", phases_text(report));
   fact(out, "Throughput", throughput_text(report));
   if (const Json* cycles = find(report, "engine.cycles"))
@@ -146,7 +128,7 @@ Html verdict_section(const Json& report, const Picture& picture) {
        fmt::format("Carousel {} ({}, {})", text_at(report, "carousel.version"), text_at(report, "carousel.commit"),
                    text_at(report, "carousel.compiler")));
   out += markup(
-      "</dl>\n</div>\n</div>\n<h3>To reproduce this run</h3>\n<pre tabindex=\"0\"><code>carousel run "
+      "</dl>\n<h3>To reproduce this run</h3>\n<pre tabindex=\"0\"><code>carousel run "
       "config.resolved.yaml --out again\ncarousel compare . "
       "again</code></pre>\n");
   out += find(report, "engine.deterministic") && report["engine"].value("deterministic", false)

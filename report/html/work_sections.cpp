@@ -59,7 +59,8 @@ Html gains_section(const Json& report, const Json& schema) {
                   .title = table.caption,
                   .label = "Bars with intervals, greatest gain first: " + table.rows.front()[0].text + " gains " +
                            table.rows.front()[1].text + ".",
-                  .height = bars_height(table)}
+                  .height = bars_height(table),
+                  .still = still_gains(still_gains_of(report))}
                .html();
     out += table.html();
   }
@@ -73,6 +74,16 @@ Html gains_section(const Json& report, const Json& schema) {
   }
   return out;
 }
+
+namespace {
+
+std::size_t bytes_column(const Table& table) {
+  for (std::size_t c = 1; c < table.columns.size(); ++c)
+    if (table.columns[c].title == "bytes") return c;
+  return 1;
+}
+
+}  // namespace
 
 Html bytes_section(const Json& report, const Json& schema) {
   const Json* bytes = find(report, "bytes");
@@ -94,7 +105,8 @@ Html bytes_section(const Json& report, const Json& schema) {
                 .tables = table.id,
                 .title = table.caption,
                 .label = "Bars, longest first: " + table.rows.front()[0].text + " are the most bytes.",
-                .height = bars_height(table)}
+                .height = bars_height(table),
+                .still = still_bars(table, bytes_column(table))}
              .html() +
          table.html();
 }
@@ -172,6 +184,14 @@ Html effects_section(const Json& report) {
   if (const Json* saved = find(report, "shading.saved"))
     out += markup("<p>Those that were not computed spare {} bytes of state a path and {} images.</p>\n",
                   value_text((*saved)["path_state_bytes"]), value_text((*saved)["images_not_decoded"]));
+  if (const Json* spared = find(report, "effects.spared"))
+    out +=
+        markup("<p>By forecast, all effects at every surface would cost {} cycles ({} to {}): {} are spared.{}</p>\n",
+               value_text((*spared)["cycles_with_all"]), value_text((*spared)["low"]), value_text((*spared)["high"]),
+               percent(number_at(*spared, "fraction")),
+               spared->contains("measured")
+                   ? fmt::format(" A run with all of them took {}.", value_text((*spared)["measured"]))
+                   : std::string());
   return out + table.html();
 }
 
@@ -201,9 +221,7 @@ Html values_section(const Json& report, const Json& schema) {
     if (key == "config" || !value.is_object()) continue;
     const Table table = values_of("values-" + key, key, value, schema_at(schema, "properties." + key));
     if (table.rows.empty()) continue;
-    out += table.folded() ? table.html()
-                          : markup("<details><summary>Table: {} ({} rows)</summary>\n{}</details>\n", key,
-                                   table.rows.size(), table.html());
+    out += table.html();
   }
   return out;
 }

@@ -32,6 +32,7 @@ export const all = {
   several_rings: shape('multi_ring', 'topology.rings=3'),
   hierarchy: shape('hierarchical', 'topology.resources=12'),
   bus: shape('bus'),
+  central: {...machine('central_cells', cycle.slice(0, 5)), drawn: ['fig-cycles']},
   point_to_point: shape('point_to_point'),
   independent: shape('independent'),
   placed: machine('demo', [...cycle, 'topology={shape: graph, nodes: [{name: left, count: 4, at: [0, 0], step: [1, 1], columns: 2}, ' +

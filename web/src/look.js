@@ -9,7 +9,10 @@ export function look() {
 }
 
 // The colours of Okabe and Ito (Color Universal Design, 2008), which differ for all kinds of sight.
-export const kHues = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#a0a000', '#8a6fd1'];
+// Four more follow, for bars of many pieces; page.css has the same twelve.
+export const kHues = ['#0072b2', '#e69f00', '#009e73', '#cc79a7', '#56b4e9', '#d55e00', '#a0a000', '#8a6fd1', '#7f5539', '#00a8a8',
+  '#b0b0ff', '#5b8c3a'];
+export const kBetter = '#009e73', kWorse = '#d55e00';
 
 // From nothing to full: the stops of cividis (Nunez et al., 2018), dark blue to yellow.
 export const kScale = ['#00204d', '#31446b', '#666870', '#958f78', '#cbba69', '#ffea46'];
@@ -27,7 +30,7 @@ export function scaleColour(part) {
 /** The least round maximum above all shares, so that faint differences are seen too. */
 export function roundMost(shares) {
   const most = Math.max(0, ...shares);
-  return [0.1, 0.2, 0.5, 1].find((m) => most <= m) ?? most;
+  return [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1].find((m) => most <= m) ?? most;
 }
 
 export const percent = (share) => `${(100 * share).toFixed(1)} %`;
@@ -64,6 +67,25 @@ export function axis(colours, more = {}) {
     axisLabel: {color: colours.ink, hideOverlap: true, ...axisLabel},
     ...others,
   };
+}
+
+/** The type of an axis for these numbers: logarithmic where each is at least 1.5 times the one before, or all together
+ * span the factor `wide` and none is 0. */
+export function scaleType(values, wide = 20) {
+  const list = [...new Set(values)].sort((a, b) => a - b);
+  if (list.length < 3 || !(list[0] > 0)) return 'value';
+  const steps = list.slice(1).map((v, i) => v / list[i]);
+  return Math.min(...steps) >= 1.5 || list.at(-1) / list[0] >= wide ? 'log' : 'value';
+}
+
+/** A logarithmic or linear axis of numbers, with its ends a little beyond them. */
+export function numberAxis(colours, values, more = {}, wide = 20) {
+  const type = scaleType(values, wide);
+  if (type === 'value') return axis(colours, {type, scale: true, ...more});
+  const least = Math.min(...values), most = Math.max(...values);
+  const doubles = most / least < 1000;
+  return axis(colours, {type, logBase: doubles ? 2 : 10, min: least / 1.15, max: most * 1.15, minorSplitLine: {show: false}, ...more,
+    axisLabel: {showMinLabel: false, showMaxLabel: false, ...more.axisLabel}});
 }
 
 /** An axis of names, first at the top. Long names are cut where the chart is narrow. */

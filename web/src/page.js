@@ -1,6 +1,6 @@
 // What makes a page lively: its charts, which are drawn when they scroll into view, and the choice of light or dark.
 import {BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart, ScatterChart} from 'echarts/charts';
-import {DataZoomComponent, GridComponent, LegendComponent, TooltipComponent, VisualMapComponent} from 'echarts/components';
+import {DataZoomComponent, GridComponent, LegendComponent, TitleComponent, TooltipComponent, VisualMapComponent} from 'echarts/components';
 import * as echarts from 'echarts/core';
 import {LabelLayout} from 'echarts/features';
 import {CanvasRenderer, SVGRenderer} from 'echarts/renderers';
@@ -22,7 +22,7 @@ import {sweepTable} from './sweep_table.js';
 import {readTable} from './table.js';
 
 echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyChart, ScatterChart, DataZoomComponent, GridComponent,
-  LegendComponent, TooltipComponent, VisualMapComponent, LabelLayout, CanvasRenderer, SVGRenderer]);
+  LegendComponent, TitleComponent, TooltipComponent, VisualMapComponent, LabelLayout, CanvasRenderer, SVGRenderer]);
 
 // A kind of chart: a function of its context that gives the option of ECharts, or {option, connect}, at once or later.
 const kinds = {
@@ -92,6 +92,9 @@ function chooser(figure, plot, state, {kinds: list, chosen}) {
 async function slider(figure, plot, state, {tables: [, links]}) {
   const run = await machineOverTime(facts, links?.rows.length ?? 0);
   if (!run) return;
+  // One scale for the whole run and for each of its moments, so that a colour means one share.
+  state.settings.most = run.most;
+  draw(figure);
   const label = document.createElement('label');
   const input = document.createElement('input');
   const output = document.createElement('output');
@@ -112,7 +115,6 @@ async function slider(figure, plot, state, {tables: [, links]}) {
     told();
     const t = Number(input.value);
     state.settings.now = t < 0 ? undefined : run.at(t);
-    state.settings.most = t < 0 ? undefined : run.most;
     if (waiting) return;
     waiting = true;
     requestAnimationFrame(() => {
@@ -141,7 +143,33 @@ function themeButton() {
   document.querySelector('header').prepend(button);
 }
 
+/** Shows the sections of one tab; with `all` those of every tab, for paper. Without scripts nothing is hidden. */
+function tabs() {
+  const links = [...document.querySelectorAll('nav a[data-tab]')];
+  if (!links.length) return () => {};
+  const sections = [...document.querySelectorAll('section[data-tab]')];
+  const show = (tab) => {
+    document.documentElement.dataset.tab = tab;
+    for (const section of sections) section.classList.toggle('on', tab === 'all' || section.dataset.tab === tab);
+    for (const link of links) {
+      if (link.dataset.tab === tab) link.setAttribute('aria-current', 'true');
+      else link.removeAttribute('aria-current');
+    }
+  };
+  /** The tab of the element that the address names, so that links into a page work. */
+  const follow = () => {
+    const named = document.getElementById(decodeURIComponent(location.hash.slice(1)));
+    const tab = named?.closest('section[data-tab]')?.dataset.tab;
+    if (tab) show(tab);
+    return tab;
+  };
+  addEventListener('hashchange', () => { if (follow()) document.getElementById(location.hash.slice(1))?.scrollIntoView(); });
+  if (!follow()) show(links[0].dataset.tab);
+  return show;
+}
+
 document.documentElement.dataset.charts = '';
+const showTab = tabs();
 themeButton();
 sweepTable(facts);
 const figures = document.querySelectorAll('figure[data-chart]');
@@ -159,14 +187,25 @@ addEventListener('resize', () => {
   clearTimeout(resizing);
   resizing = setTimeout(() => {
     for (const [figure, state] of drawn)
-      if (figure.querySelector('.plot').clientWidth !== state.width) draw(figure);
+      if (figure.querySelector('.plot').clientWidth && figure.querySelector('.plot').clientWidth !== state.width) draw(figure);
   }, 150);
 });
 // Before printing, all charts are needed.
-addEventListener('beforeprint', () => figures.forEach((figure) => { if (!drawn.has(figure)) draw(figure); }));
+addEventListener('beforeprint', () => {
+  const before = document.documentElement.dataset.tab;
+  const closed = [...document.querySelectorAll('details:not([open])')];
+  showTab('all');
+  for (const details of closed) details.open = true;
+  figures.forEach((figure) => { if (!drawn.has(figure)) draw(figure); });
+  addEventListener('afterprint', () => {
+    for (const details of closed) details.open = false;
+    if (before) showTab(before);
+  }, {once: true});
+});
 
-/** For tests: draws all charts, and gives them by the ids of their figures. */
+/** For tests: opens all tabs, draws all charts, and gives them by the ids of their figures. */
 window.carouselCharts = async () => {
+  showTab('all');
   for (const figure of figures) if (!drawn.get(figure)?.chart) await draw(figure);
   return Object.fromEntries([...drawn].map(([figure, {chart}]) => [figure.id, chart]));
 };

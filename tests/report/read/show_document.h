@@ -3,10 +3,10 @@
 #include <string>
 
 #include "report/compare/comparison.h"
-#include "report/html/compare_page.h"
 #include "report/html/run_page.h"
-#include "report/html/study_pages.h"
-#include "report/html/sweep_page.h"
+#include "report/html/studies/compare_page.h"
+#include "report/html/studies/study_pages.h"
+#include "report/html/studies/sweep_page.h"
 #include "report/read/document.h"
 #include "report/run/report_difference.h"
 

@@ -10,11 +10,11 @@ export function flow({tables: [table], colours, width}) {
   return {
     ...base(colours),
     series: [{
-      type: 'sankey', left: 8, right: width < 600 ? 110 : 190, top: 12, bottom: 12, nodeGap: 14, draggable: false,
+      type: 'sankey', left: 8, right: width < 600 ? 110 : 190, top: 12, bottom: 12, nodeGap: 20, draggable: false,
       emphasis: {focus: 'adjacency'},
-      label: {color: colours.ink, lineHeight: 15, overflow: 'break', width: width < 600 ? 100 : 180,
-        formatter: ({name}) => `${name}\n${full(amount(name))}`},
-      labelLayout: {hideOverlap: true},
+      label: {color: colours.ink, lineHeight: 15, overflow: 'truncate', width: width < 600 ? 105 : 190, fontSize: width < 600 ? 10 : 12,
+        formatter: ({name}) => `${name} ${full(amount(name))}`},
+      labelLayout: {moveOverlap: 'shiftY'},
       lineStyle: {color: 'gradient', opacity: 0.4},
       data: places.map((name, i) => ({name, itemStyle: {color: kHues[i % kHues.length]}})),
       links: table.rows.map(([source, target, value]) => ({source, target, value})),

@@ -1,5 +1,5 @@
 // Several bars a row, side by side.
-import {axis, base, full, kHues, names, percent, short} from '../look.js';
+import {axis, base, full, kBetter, kHues, kWorse, names, percent, short} from '../look.js';
 
 /** The columns from `first` on up to the first that holds no number. */
 function numberColumns(table, first) {
@@ -46,10 +46,26 @@ export function ratios(context) {
   const times = (v) => `×${Number((2 ** v).toPrecision(3))}`;
   const most = 8;  // doublings that are drawn; the table has the number
   const clamped = (v) => (v > 0 ? Math.max(-most, Math.min(most, Math.log2(v))) : null);
+  const drawn = table.rows.flatMap((r) => columns.map(([, c]) => r[c])).filter((v) => typeof v === 'number').map(clamped).filter((v) => v !== null);
+  const ends = [Math.min(0, ...drawn), Math.max(0, ...drawn)];
+  const wide = ends[1] - ends[0] > 3;
+  const ticks = (wide ? [1 / 64, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64] : [0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2, 3, 4])
+    .map(Math.log2).filter((v) => v >= ends[0] - 0.2 && v <= ends[1] + 0.2);
+  // Less is better but for rates and hits; other counts say neither.
+  const side = (name, v) => {
+    const greater = /^(rays|mrays|hit|steady|reached|throughput)|per (kilocycle|second|joule|mm)|rays\/s|Mrays|hit fraction/i.test(name);
+    const smaller = /cycle|joule|nJ|bytes|latency|tests|waits?|stall|second|time|area|mm/i.test(name);
+    if (!greater && !smaller) return undefined;
+    return (v > 0) === greater ? kBetter : kWorse;
+  };
   const rows = table.rows.filter((r) => columns.some(([, c]) => typeof r[c] === 'number' && r[c] > 0));
   if (!rows.length) return null;
   return grouped(context, rows.map((r) => r[0]), columns.map(([name, c]) => ({
-    name, data: rows.map((r) => (typeof r[c] === 'number' ? clamped(r[c]) : null)), text: ({value}) => (value == null ? '' : times(value)),
-  })), {type: 'value', name: 'times as much as A', axisLabel: {formatter: times}},
+    name, data: rows.map((r) => {
+      const value = typeof r[c] === 'number' ? clamped(r[c]) : null;
+      return columns.length === 1 && value ? {value, itemStyle: {color: side(r[0], value) ?? kHues[0]}} : value;
+    }), text: ({value}) => (value == null ? '' : times(value)),
+  })), {type: 'value', name: 'times as much as A', splitLine: {show: false}, axisLabel: {formatter: times, customValues: ticks, hideOverlap: true},
+    axisTick: {customValues: ticks}},
   {valueFormatter: (v) => (v == null ? '–' : times(v))});
 }

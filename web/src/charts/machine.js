@@ -1,7 +1,7 @@
 // The machine as it is: every resource and link, coloured by its use; with time series, at any time of the run.
 import {base, full, kScale, percent, roundMost, scaleColour} from '../look.js';
 import {hasSeries, series} from '../series.js';
-import {bends, leastGap, places} from './layout.js';
+import {bends, leastGap} from './layout.js';
 
 const luminance = (rgb) => {
   const [r, g, b] = rgb.match(/[\d.]+/g).map(Number);
@@ -16,18 +16,16 @@ export function machine(context) {
   const from = links ? links.column('from') : 0, to = links ? links.column('to') : 0;
   const ends = links ? links.rows.map((r) => [r[from], r[to]]) : [];
   const linkUse = links ? links.rows.map((r) => r[useOf(links)]) : [];
-  const hubs = Math.max(0, ...ends.flat().map((node) => node + 1 - facts.resources));
-  const all = facts.resources + hubs;
-  const at = places(facts, hubs, ends);
+  const at = facts.places;  // report/html/machine_places.h
+  const all = at.length, hubs = all - facts.resources;
   const bent = bends(ends, facts);
   const bus = facts.shape === 'bus';
   const hubName = facts.shape === 'graph' ? 'router' : 'bridge';
   const most = context.most ?? roundMost([...resourceUse, ...linkUse]);
   const now = context.now ?? {resources: resourceUse, links: linkUse};
-  const room = Math.min(width, height) * (facts.shape === 'independent' || bus ? 1.2 : 2.2);
-  const gap = facts.shape === 'graph' ? 0.72 * leastGap(at, width - 80, height - 106) : Infinity;
-  const size = Math.max(5, Math.min(46, room / Math.max(4, all), gap));
-  const named = size >= 24, valued = size >= 38;
+  const gap = 0.72 * leastGap(at, width - 80, height - 106, !bus);
+  const size = Math.max(5, Math.min(46, gap));
+  const named = size >= 15, valued = size >= 38;
   const node = (i) => {
     const hub = i >= facts.resources;
     const colour = hub ? colours.panel : scaleColour((now.resources[i] ?? 0) / most);
@@ -41,7 +39,7 @@ export function machine(context) {
       symbolSize: hub && bus ? [width * 0.8, 22] : size,
       itemStyle: {color: colour, borderColor: colours.soft, borderWidth: 1},
       label: {show: named || (hub && bus), color: ink, lineHeight: 14,
-        fontSize: drawn ? Math.max(7, Math.min(12, Math.floor(1.7 * size / short.length))) : 12,
+        fontSize: drawn ? Math.max(7, Math.min(12, Math.floor(1.7 * size / short.length))) : size < 24 ? 9 : 12,
         formatter: valued && !hub ? `${short}\n${Math.round(100 * (now.resources[i] ?? 0))} %` : short},
     };
   };
@@ -50,7 +48,7 @@ export function machine(context) {
   const edges = ends.map(([a, b], i) => ({
     source: `${a}`, target: `${b}`, value: now.links[i],
     lineStyle: {color: scaleColour((now.links[i] ?? 0) / most), width: thick, curveness: bent[i],
-      opacity: ends.length > 30 ? 0.25 + 0.75 * Math.min(1, (now.links[i] ?? 0) / most) : 1},
+      opacity: ends.length > 200 ? 0.4 + 0.6 * Math.min(1, (now.links[i] ?? 0) / most) : 1},
   }));
   if (bus) {
     // Each resource meets the bus where it stands, not in the middle of the bus.

@@ -10,7 +10,7 @@ export function quantiles({tables: [table], colours, width}) {
     tooltip: {...base(colours).tooltip, trigger: 'axis',
       formatter: ([p]) => `${percent(p.value[1])} of the packets: at most ${full(p.value[0])} cycles`},
     xAxis: axis(colours, {type: 'log', name: 'cycles (logarithmic)', nameLocation: 'middle', nameGap: 28,
-      min: points[0][0] * 0.9, splitNumber: width < 600 ? 3 : 8, axisLabel: {formatter: short}}),
+      min: 10 ** Math.floor(Math.log10(points[0][0])), splitNumber: width < 600 ? 3 : 8, axisLabel: {formatter: short}}),
     yAxis: axis(colours, {type: 'value', max: 1, axisLabel: {formatter: (v) => `${Math.round(100 * v)} %`}}),
     series: [{type: 'line', name: 'packets', data: points, symbol: 'circle', symbolSize: 7, lineStyle: {width: 2},
       color: kHues[0], areaStyle: {opacity: 0.12}}],

@@ -6,6 +6,7 @@ export function stacked({tables: [table], colours, width}) {
   const used = table.columns.map((_, c) => c).filter((c) => c > 0 && rows.some((r) => r[c] > 0));
   const few = 32;
   const idle = colours.line;
+  const dark = new Set([0, 8, 11]);  // colours on which white is read better
   return {
     ...base(colours),
     grid: {left: 10, right: rows.length > few ? 40 : 24, top: 36, bottom: 10, containLabel: true},
@@ -17,12 +18,12 @@ export function stacked({tables: [table], colours, width}) {
       ? [{type: 'slider', yAxisIndex: 0, startValue: 0, endValue: few - 1, right: 4, width: 14, showDetail: false,
           brushSelect: false}]
       : [],
-    series: used.map((c) => {
-      const nothing = c === table.columns.length - 1;
+    series: used.map((c, i) => {
+      const nothing = table.columns[c] === 'nothing to do';
       return {
         type: 'bar', name: table.columns[c], stack: 'cycles', barMaxWidth: 22, data: rows.map((r) => r[c]),
-        itemStyle: {color: nothing ? idle : kHues[(c - 1) % kHues.length], borderColor: colours.page, borderWidth: 1},
-        label: {show: true, color: nothing ? colours.ink : c === 1 ? '#fff' : '#000', fontSize: 11,
+        itemStyle: {color: nothing ? idle : kHues[i % kHues.length], borderColor: colours.page, borderWidth: 1},
+        label: {show: true, color: nothing ? colours.ink : dark.has(i) ? '#fff' : '#000', fontSize: 11,
           formatter: ({value}) => (value * width * 0.6 > 44 ? percent(value) : '')},
       };
     }),

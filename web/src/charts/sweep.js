@@ -1,5 +1,6 @@
 // The plots of a sweep: any two columns of its table of points, the Pareto front of two results, main effects.
-import {axis, base, full, kHues, names, short} from '../look.js';
+import {front, knee} from '../front.js';
+import {axis, base, full, kHues, names, numberAxis, short} from '../look.js';
 
 const isNumber = (value) => typeof value === 'number';
 const numeric = (table) => table.columns.filter((name, c) => c > 1 && table.rows.some((row) => isNumber(row[c])));
@@ -28,11 +29,11 @@ const connect = (chart) => chart.on('click', ({data}) => {
   if (data?.point) dispatchEvent(new CustomEvent('carousel-point', {detail: data.point}));
 });
 
-function axisOf(colours, table, name, more) {
+function axisOf(colours, table, name, more, wide) {
   const c = table.column(name);
   const values = table.rows.map((row) => row[c]);
   if (values.some((v) => isNumber(v)))
-    return axis(colours, {type: 'value', scale: true, name, axisLabel: {formatter: short}, ...more});
+    return numberAxis(colours, values.filter(isNumber), {name, axisLabel: {formatter: short}, ...more}, wide);
   return axis(colours, {type: 'category', data: [...new Set(values)], name, ...more});
 }
 
@@ -46,7 +47,7 @@ export function sweepPlot({tables: [table], facts, colours, width, x, y, by, for
   y ??= results.find((name) => numbers.includes(name)) ?? numbers[0];
   x ??= keys.find((name) => numbers.includes(name)) ?? unlike(all, y);
   by ??= keys.find((name) => name !== x) ?? 'none';
-  form ??= 'dots';
+  form ??= table.rows.some((row) => isNumber(row[table.column(x)])) ? 'lines' : 'dots';
   const [cx, cy, cb] = [x, y, by].map(table.column);
   const category = !table.rows.some((row) => isNumber(row[cx]));
   const groups = new Map();
@@ -72,7 +73,7 @@ export function sweepPlot({tables: [table], facts, colours, width, x, y, by, for
     tooltip: {...base(colours).tooltip, formatter: ({data, seriesName}) =>
       (data.row ? told(table, data.row) : `${seriesName}<br>${x}: ${data[0]}<br>mean of ${y}: ${full(data[1])}`)},
     xAxis: axisOf(colours, table, x, {nameLocation: 'middle', nameGap: 28, splitNumber: width < 600 ? 3 : 8}),
-    yAxis: axis(colours, {type: 'value', scale: true, name: y, axisLabel: {formatter: short}}),
+    yAxis: axisOf(colours, table, y, {}),
     series: [...groups].map(([name, list], i) => ({
       name, type: lines ? 'line' : 'scatter', data: lines ? means(list) : list, symbolSize: lines ? 7 : 10,
       itemStyle: {color: kHues[i % kHues.length], opacity: 0.85}, lineStyle: {color: kHues[i % kHues.length]},
@@ -82,42 +83,32 @@ export function sweepPlot({tables: [table], facts, colours, width, x, y, by, for
     ['Across', 'x', all, x], ['Up', 'y', numbers, y], ['Colour', 'by', ['none', ...keys], by], ['As', 'form', ['dots', 'lines'], form]])};
 }
 
-/** The rows that no other row betters in one of two numbers without being worse in the other, in the order of the first. */
-export function front(rows, greater) {
-  const cost = (row) => row.value.map((v, i) => (greater[i] ? -v : v));
-  const sorted = [...rows].sort((a, b) => cost(a)[0] - cost(b)[0] || cost(a)[1] - cost(b)[1]);
-  const out = [];
-  let least = Infinity, at = null;
-  for (const row of sorted) {
-    const [first, second] = cost(row);
-    if (second < least || (second === least && first === at)) {
-      out.push(row);
-      least = second;
-      at = first;
-    }
-  }
-  return out;
-}
-
 export function sweepPareto({tables: [table], facts, colours, width, a, b, betterA, betterB}) {
   const list = facts.sweep.results.filter((name) => numeric(table).includes(name));
   if (list.length < 2) return null;
-  a ??= list[0];
-  b ??= unlike(list, a);
-  const better = (name, chosen) => chosen ?? (facts.sweep.greater_is_better.includes(name) ? 'greater' : 'smaller');
+  // The goals of --pareto; without them cycles, and of the others the first that is no other form of them.
+  const [goalA, goalB] = facts.sweep.pareto ?? [];
+  a ??= list.includes(goalA?.result) ? goalA.result : list[0];
+  b ??= list.includes(goalB?.result) ? goalB.result : list.find((name) => name !== a && !/^(cycles|rays_per|mrays_per|gain)/.test(name)) ?? unlike(list, a);
+  const goal = (name) => [goalA, goalB].find((g) => g?.result === name);
+  const better = (name, chosen) => chosen ??
+    ((goal(name)?.maximise ?? facts.sweep.greater_is_better.includes(name)) ? 'greater' : 'smaller');
   const [ca, cb] = [a, b].map(table.column);
   const points = table.rows.filter((row) => isNumber(row[ca]) && isNumber(row[cb]))
     .map((row) => ({value: [row[ca], row[cb]], point: row[0], row}));
   const best = front(points, [better(a, betterA) === 'greater', better(b, betterB) === 'greater']);
+  const turn = knee(best);
   const option = {
     ...base(colours),
     grid: {left: 20, right: 40, top: 60, bottom: 44, containLabel: true},
     tooltip: {...base(colours).tooltip, formatter: ({data}) => told(table, data.row)},
-    xAxis: axisOf(colours, table, a, {nameLocation: 'middle', nameGap: 28, splitNumber: width < 600 ? 3 : 8}),
-    yAxis: axisOf(colours, table, b, {}),
+    xAxis: axisOf(colours, table, a, {nameLocation: 'middle', nameGap: 28, splitNumber: width < 600 ? 3 : 8}, 2),
+    yAxis: axisOf(colours, table, b, {}, 2),
     series: [
       {name: 'all points', type: 'scatter', data: points, symbolSize: 9, itemStyle: {color: kHues[4], opacity: 0.7}},
       {name: 'Pareto front', type: 'line', data: best, symbolSize: 11, itemStyle: {color: kHues[5]}, lineStyle: {color: kHues[5]}},
+      ...(turn ? [{name: 'knee', type: 'scatter', data: [turn], symbol: 'diamond', symbolSize: 20, itemStyle: {color: kHues[2]}, z: 5,
+        label: {show: true, position: 'right', distance: 10, color: colours.ink, backgroundColor: colours.page, padding: 1, formatter: () => facts.sweep.keys.map((key) => `${key.split('.').at(-1)} ${turn.row[table.column(key)]}`).join(', ')}}] : []),
     ],
   };
   const sides = ['as the result', 'smaller', 'greater'];

@@ -1,4 +1,4 @@
-#include "report/html/compare_page.h"
+#include "report/html/studies/compare_page.h"
 
 #include <algorithm>
 
@@ -33,6 +33,7 @@ Html at_a_glance(const Comparison& c) {
     out += markup("<p>The configuration is the same{}.</p>\n",
                   c.deterministic ? "" : "; counts and times depend on the timing of threads");
   Table table{"runs", "The runs", {{"letter"}, {"run"}}};
+  table.open = true;
   for (const ComparedText& text : c.texts) table.columns.push_back({text.name});
   for (std::size_t r = 0; r < c.runs.size(); ++r) {
     auto& row = table.rows.emplace_back(std::vector<Cell>{cell(letter(r)), cell(c.runs[r])});
@@ -65,7 +66,7 @@ Section section_of(const ComparedSection& section, std::size_t number, std::size
   for (std::size_t r = 1; r < runs; ++r) table.columns.push_back({letter(r) + "/A"});
   bool shares = true, any_ratio = false;
   for (const ComparedRow& row : section.rows) {
-    auto& cells = table.rows.emplace_back(std::vector<Cell>{cell(row.name), cell(row.unit)});
+    auto& cells = table.rows.emplace_back(std::vector<Cell>{cell(words(row.name)), cell(row.unit)});
     for (std::size_t r = 0; r < runs; ++r) cells.push_back(value_of(row, r));
     for (std::size_t r = 1; r < runs; ++r) {
       cells.push_back(ratio_of(row, r));

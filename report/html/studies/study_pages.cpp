@@ -1,4 +1,4 @@
-#include "report/html/study_pages.h"
+#include "report/html/studies/study_pages.h"
 
 #include <algorithm>
 #include <functional>
@@ -8,6 +8,8 @@
 
 #include "report/html/html.h"
 #include "report/html/page.h"
+#include "report/html/still.h"
+#include "report/text/singular.h"
 
 namespace carousel::report::html {
 
@@ -51,6 +53,13 @@ Table table_of_rows(std::string id, std::string caption, const Json& list,
   return table;
 }
 
+/// The first column of numbers after the name; 0 if there is none.
+std::size_t first_number(const Table& table) {
+  for (std::size_t c = 1; c < table.columns.size(); ++c)
+    if (table.rows[0][c].number.is_number()) return c;
+  return 0;
+}
+
 Html bars_of(const Table& table, const std::string& title) {
   if (table.rows.empty()) return {};
   return Figure{.id = "fig-" + table.id,
@@ -58,9 +67,23 @@ Html bars_of(const Table& table, const std::string& title) {
                 .tables = table.id,
                 .title = title,
                 .label = "Bars, a bar a row of the table below.",
-                .height = 90 + 26 * static_cast<int>(std::min<std::size_t>(table.rows.size(), 24))}
+                .height = 90 + 26 * static_cast<int>(std::min<std::size_t>(table.rows.size(), 24)),
+                .still = first_number(table) ? still_bars(table, first_number(table)) : Html()}
              .html() +
          table.html();
+}
+
+/// A verdict of several sentences: the first is the headline, the others a line each.
+Html sentences_of(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  Html out;
+  for (std::size_t begin = 0; begin < text.size();) {
+    const std::size_t point = text.find(". ", begin), end = point == text.npos ? text.size() : point + 1;
+    const std::string sentence = text.substr(begin, end - begin);
+    out += begin == 0 ? markup("<p class=\"verdict\">{}</p>\n", sentence) : markup("<p>{}</p>\n", sentence);
+    begin = end + 1;
+  }
+  return out;
 }
 
 Html interrupted(const Json& report) {
@@ -85,11 +108,14 @@ std::string stress_page(const Json& stress) {
       [&](const Json& row) { return fmt::format("{} of depth {}", text(row, "queue"), number_at(row, "depth")); },
       {"rate_median", "rate_least", "rate_most"});
   std::uint64_t faulty = 0;
-  for (const Json& row : stress["rows"]) faulty += text_at(row, "found").empty() ? 0 : 1;
+  std::string which;
+  for (std::size_t i = 0; i < rows.rows.size(); ++i)
+    if (const std::string found = text_at(stress["rows"][i], "found"); !found.empty() && ++faulty <= 6)
+      which += fmt::format("{}{} ({})", which.empty() ? "" : "; ", rows.rows[i][0].text, found);
+  if (faulty > 6) which += fmt::format("; and {} more", faulty - 6);
   Html glance = interrupted(stress);
-  glance += markup("<p class=\"verdict\">{}</p>\n",
-                   faulty == 0 ? "No queue lost, doubled, reordered or tore a message."
-                               : fmt::format("{} rows of the table show faults of queues.", faulty));
+  glance += markup("<p class=\"verdict\">{}</p>\n", faulty == 0 ? "No queue lost, doubled, reordered or tore a message."
+                                                                : fmt::format("Faults of queues: {}.", which));
   if (const std::string verdict = text_at(stress, "ring_verdict"); !verdict.empty())
     glance += markup("<p>{}</p>\n", verdict);
   glance += markup("<p>{} repetitions on a host of {} hardware threads. Rates of queues are the host's.</p>\n",
@@ -147,13 +173,15 @@ std::string accuracy_page(const Json& accuracy) {
                     {"ns_per_ray.median", "wrong_answers", "ns_per_ray.least", "ns_per_ray.most", "frontier.host"});
   const Table spawn = table_of_rows("spawn", "Offset of new rays", accuracy["spawn"],
                                     [](const Json& row) { return text_at(row, "spawn"); }, {});
-  const Table sampling =
-      table_of_rows("sampling", "Error of the picture over the number of samples", accuracy["sampling"]["rows"],
-                    [](const Json& row) { return fmt::format("{} samples", number_at(row, "samples")); }, {"rmse"});
+  const Table sampling = table_of_rows(
+      "sampling", "Error of the picture over the number of samples", accuracy["sampling"]["rows"],
+      [](const Json& row) { return singular(fmt::format("{} samples", number_at(row, "samples"))); }, {"rmse"});
   Html glance = interrupted(accuracy);
-  glance += markup("<p class=\"verdict\">{}</p>\n", text_at(accuracy, "verdict"));
-  glance += markup("<p>{} rays of the scene {} were compared with exact arithmetic, each time measured {} times.</p>\n",
-                   value_text(accuracy["rays"]), text_at(accuracy, "scene"), number_at(accuracy, "repetitions"));
+  glance += sentences_of(text_at(accuracy, "verdict"));
+  glance += markup("<p>{}</p>\n",
+                   singular(fmt::format(
+                       "{} rays of the scene {} were compared with exact arithmetic, each measured {} times.",
+                       value_text(accuracy["rays"]), text_at(accuracy, "scene"), number_at(accuracy, "repetitions"))));
   Html body = Figure{.id = "fig-levels",
                      .kind = "scatter",
                      .tables = "levels",

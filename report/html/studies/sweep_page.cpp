@@ -1,4 +1,4 @@
-#include "report/html/sweep_page.h"
+#include "report/html/studies/sweep_page.h"
 
 #include <algorithm>
 
@@ -23,6 +23,7 @@ bool greater_is_better(const Json& sweep, const Json& result) {
 /// A row a point: digest, status, keys, results.
 Table points_table(const Json& sweep) {
   Table table{"points", "All points", {{"point"}, {"status"}}};
+  table.open = true;
   for (const char* part : {"keys", "results"})
     for (const Json& name : list_at(sweep, part)) table.columns.push_back({name.get<std::string>()});
   for (const Json& point : list_at(sweep, "points")) {
@@ -80,6 +81,27 @@ std::string keys_text(const Json& point) {
   return out;
 }
 
+/// The Pareto front of the chosen results: its points, the first of which is best in the first result.
+Html front_of(const Json& sweep) {
+  const Json* pareto = find(sweep, "pareto");
+  if (!pareto || (*pareto)["points"].empty()) return {};
+  const Json& goals = (*pareto)["goals"];
+  const std::string a = text_at(goals[0], "result"), b = text_at(goals[1], "result");
+  Table table{"front", fmt::format("Pareto front of {} and {}", a, b), {{"keys"}, {a}, {b}, {"point"}}};
+  table.open = true;
+  for (const Json& digest : (*pareto)["points"])
+    for (const Json& point : sweep["points"])
+      if (point["point"] == digest)
+        table.rows.push_back({cell(keys_text(point)), cell(point["results"].value(a, Json())),
+                              cell(point["results"].value(b, Json())), cell(text_at(point, "point"))});
+  const std::size_t all = sweep["points"].size();
+  Html out = markup("<p class=\"verdict\">{}</p>\n",
+                    table.rows.size() == 1
+                        ? fmt::format("One point is best in both {} and {}: {}.", a, b, table.rows[0][0].text)
+                        : fmt::format("Of {} points, {} are a trade-off of {} and {}.", all, table.rows.size(), a, b));
+  return out + table.html();
+}
+
 Html glance_of(const Json& sweep) {
   std::size_t done = 0, failed = 0, missing = 0;
   for (const Json& point : sweep["points"]) {
@@ -89,7 +111,9 @@ Html glance_of(const Json& sweep) {
   Html out;
   if (missing > 0)
     out += markup("<p class=\"notice\"><strong>Incomplete:</strong> {} points have not run.</p>\n", missing);
+  out += front_of(sweep);
   for (const Json& name : list_at(sweep, "results")) {
+    if (sweep.contains("pareto")) break;
     const std::string result = name.get<std::string>();
     const Json* best = best_in(sweep, result);
     if (best == nullptr) continue;
@@ -136,8 +160,8 @@ std::string sweep_page(const Json& sweep, const std::string& folder) {
   const bool any = !points.rows.empty() && !list_at(sweep, "results").empty();
   return page_of("Carousel: sweep of " + text_at(sweep, "config"), "carousel sweep",
                  {{"glance", "At a glance", glance_of(sweep)},
-                  {"plots", "Keys and results", any ? plot : Html()},
                   {"pareto", "Pareto front", any && sweep["results"].size() > 1 ? pareto : Html()},
+                  {"plots", "Keys and results", any ? plot : Html()},
                   {"effects", "Main effects", effects.rows.empty() ? Html() : about + means + effects.html()},
                   {"points", "Points", points.html()},
                   {"failures", "Failures", failures_of(sweep)}},
@@ -145,7 +169,8 @@ std::string sweep_page(const Json& sweep, const std::string& folder) {
                    {{"folder", folder},
                     {"keys", list_at(sweep, "keys")},
                     {"results", list_at(sweep, "results")},
-                    {"greater_is_better", list_at(sweep, "greater_is_better")}}}},
+                    {"greater_is_better", list_at(sweep, "greater_is_better")},
+                    {"pareto", sweep.contains("pareto") ? sweep["pareto"]["goals"] : Json::array()}}}},
                  {});
 }
 

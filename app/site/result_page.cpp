@@ -1,0 +1,52 @@
+#include "app/site/result_page.h"
+
+#include "core/system/error.h"
+#include "report/html/run_page.h"
+#include "report/html/studies/study_pages.h"
+#include "report/html/studies/sweep_page.h"
+#include "shading/camera/page_picture.h"
+
+namespace carousel::app {
+
+using Json = nlohmann::ordered_json;
+
+std::string run_page_of(const Json& report, const std::filesystem::path& folder) {
+  report::html::Picture picture, heat;
+  if (report.contains("digest") && report["digest"].contains("image"))
+    if (const auto found = shading::page_picture(folder / "image.png")) picture = {found->mime_type, found->bytes};
+  if (report.contains("heat"))
+    if (const auto found = shading::page_picture(folder / "heat_cycles.png")) heat = {found->mime_type, found->bytes};
+  return report::html::run_page(report, picture, heat);
+}
+
+std::string page_of_file(const report::Document& document, const std::filesystem::path& file) {
+  using report::DocumentKind;
+  const Json& json = document.json;
+  switch (document.kind) {
+    case DocumentKind::kRayLife:
+      return report::html::ray_life_page(json);
+    case DocumentKind::kPoint:
+      if (!json.contains("report")) throw FileError(file.string() + ": the point has no report, since its run failed");
+      return run_page_of(json["report"], file.parent_path());
+    case DocumentKind::kSweep:
+      return report::html::sweep_page(json, file.has_parent_path() ? file.parent_path().string() : ".");
+    case DocumentKind::kAccuracy:
+      return report::html::accuracy_page(json);
+    case DocumentKind::kStress:
+      return report::html::stress_page(json);
+    case DocumentKind::kVersus:
+      return report::html::versus_page(json);
+    default:
+      return run_page_of(json, file.parent_path());
+  }
+}
+
+std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> out;
+  std::error_code ignored;
+  for (const char* name : {"sweep.json", "report.json", "accuracy.json", "stress.json", "versus.json"})
+    if (std::filesystem::exists(folder / name, ignored)) out.push_back(folder / name);
+  return out;
+}
+
+}  // namespace carousel::app

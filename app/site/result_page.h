@@ -1,0 +1,22 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "report/read/document.h"
+
+namespace carousel::app {
+
+/// report.html of a run whose picture, if it has one, is `folder`/image.png.
+std::string run_page_of(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
+
+/// The page of any file that a command wrote. Throws FileError for a point without a report.
+std::string page_of_file(const report::Document& document, const std::filesystem::path& file);
+
+/// The results that commands wrote to a folder, side by side; none if there are none.
+std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder);
+
+}  // namespace carousel::app
