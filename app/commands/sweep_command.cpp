@@ -206,7 +206,10 @@ int finish(const SweepRows& rows, const InterruptScope& interrupt) {
 
 /// Writes and prints the results.
 void give_results(const SweepArguments& arguments, const SweepSetup& setup, SweepRows rows, bool write, bool print) {
-  rows.drop_empty();
+  std::vector<std::string> asked = arguments.results;
+  if (!arguments.pareto.empty())
+    for (const Goal& goal : parse_goals(rows, arguments.pareto)) asked.push_back(rows.columns[goal.column].name);
+  rows.drop_empty(asked);
   const std::vector<Goal> goals = arguments.pareto.empty() ? std::vector<Goal>{} : parse_goals(rows, arguments.pareto);
   const nlohmann::ordered_json sweep = sweep_json(rows, goals, arguments.config);
   const std::string json = report::sealed(sweep).dump(1) + "\n";

@@ -142,8 +142,9 @@ std::optional<double> SweepRows::number(const SweepRow& row, std::size_t column)
   return row.results[column].get<double>();
 }
 
-void SweepRows::drop_empty() {
+void SweepRows::drop_empty(const std::vector<std::string>& kept) {
   for (std::size_t i = columns.size(); i-- > 0;) {
+    if (std::find(kept.begin(), kept.end(), columns[i].name) != kept.end()) continue;
     const bool any = std::any_of(rows.begin(), rows.end(), [&](const SweepRow& row) {
       return i < row.results.size() && !row.results[i].is_null();
     });

@@ -52,8 +52,8 @@ struct SweepRows {
   void require_result(std::size_t column, const Config& base, const std::string& option) const;
   /// The number in a column; absent for a point without it.
   std::optional<double> number(const SweepRow& row, std::size_t column) const;
-  /// Leaves out the columns that no point has.
-  void drop_empty();
+  /// Leaves out the columns that no point has, but for those with the names `kept`, which somebody asked for.
+  void drop_empty(const std::vector<std::string>& kept = {});
   std::size_t failed() const;
   std::size_t done() const;
 };
