@@ -55,7 +55,7 @@ install(DIRECTORY docs/ DESTINATION ${docs} ${program})
 install(DIRECTORY python/examples/ DESTINATION ${docs}/examples/python ${program} PATTERN .ipynb_checkpoints EXCLUDE)
 
 # -- Modules: each where its library was found
-foreach(module IN ITEMS pictures mpi scenes)
+foreach(module IN ITEMS pictures mpi scenes http)
   if(TARGET carousel_module_${module})
     list(APPEND module_components carousel-${module})
     install(TARGETS carousel_module_${module} LIBRARY DESTINATION ${modules} COMPONENT carousel-${module})
@@ -126,6 +126,9 @@ and hosts by Open MPI (engine.transport: mpi).")
 set(CPACK_COMPONENT_CAROUSEL-SCENES_DESCRIPTION
     "Scenes of other formats than glTF for Carousel, a simulator of ray-tracing
 hardware, by Open Asset Import Library.")
+set(CPACK_COMPONENT_CAROUSEL-HTTP_DESCRIPTION
+    "A site of results on this machine (carousel serve) for Carousel, a simulator of
+ray-tracing hardware, by cpp-httplib.")
 set(CPACK_DEBIAN_CAROUSEL-MPI_PACKAGE_RECOMMENDS "openmpi-bin")
 foreach(component IN LISTS module_components)
   string(TOUPPER ${component} upper)

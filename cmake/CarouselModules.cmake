@@ -47,6 +47,14 @@ else()
   message(STATUS "No module pictures: libopenimageio-dev is missing; PNG, JPEG, WebP and EXR need none")
 endif()
 
+# -- http: cpp-httplib, as Debian compiles it
+pkg_check_modules(httplib QUIET IMPORTED_TARGET cpp-httplib)
+if(httplib_FOUND)
+  carousel_module(http SOURCES modules/http/http_module.cpp LIBRARIES PkgConfig::httplib)
+else()
+  message(STATUS "No module http: libcpp-httplib-dev is missing; carousel serve needs it")
+endif()
+
 # -- mpi: Open MPI
 set(MPI_CXX_SKIP_MPICXX ON)   # the bindings for C; those for C++ are gone from MPI 3
 find_package(MPI QUIET COMPONENTS CXX)

@@ -32,6 +32,7 @@
 #include "app/host/log.h"
 #include "app/host/output.h"
 #include "app/host/version_text.h"
+#include "app/site/serve_command.h"
 #include "app/usage/examples.h"
 #include "app/versus/versus_command.h"
 #include "core/system/error.h"
@@ -86,6 +87,7 @@ struct Arguments {
   InspectArguments inspect;
   CompareArguments compare;
   ReportArguments report;
+  ServeArguments serve;
   FollowArguments follow;
   VersusArguments versus;
   SchemaArguments schema;
@@ -111,10 +113,10 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   check->add_flag("--graph", arguments.check.graph,
                   "Print the network as a graph, topology with nodes and links as YAML, and nothing else (default: all "
                   "keys)");
-  CLI::App* stress =
-      program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
   check->add_flag("--json", arguments.check.json,
                   "Print the same as JSON, and errors with their places too (default: YAML with comments)");
+  CLI::App* stress =
+      program.add_subcommand("stress", "Test queue designs under load: loss, order, throughput and latency");
   add_config_options(*stress, arguments.stress, "the queues are tested by themselves");
   add_stress_options(*stress, arguments.stress);
   add_accuracy(program, arguments.accuracy);
@@ -123,6 +125,7 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   add_versus(program, arguments.versus);
   add_follow(program, arguments.follow);
   add_report(program, arguments.report);
+  add_serve(program, arguments.serve);
   CLI::App* schema = program.add_subcommand("schema", "Print the JSON Schema of configurations or reports");
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
@@ -173,6 +176,7 @@ int run_command_line(int argc, const char* const* argv) {
   if (program.got_subcommand("compare")) return compare_command(arguments.compare);
   if (program.got_subcommand("versus")) return versus_command(arguments.versus);
   if (program.got_subcommand("report")) return report_command(arguments.report);
+  if (program.got_subcommand("serve")) return serve_command(arguments.serve);
   if (program.got_subcommand("follow")) return follow_command(arguments.follow);
   if (program.got_subcommand("completion")) return completion_command(program, arguments.completion);
   if (program.got_subcommand("man")) return man_command(program);

@@ -74,6 +74,19 @@ void add_report(CLI::App& program, ReportArguments& r) {
       ->type_name("FILE");
 }
 
+void add_serve(CLI::App& program, ServeArguments& s) {
+  CLI::App* serve = program.add_subcommand(
+      "serve", "Show folders of results as one site on this machine, at 127.0.0.1, until it is interrupted");
+  serve
+      ->add_option("folders", s.folders, "Folders that run, sweep, stress or accuracy wrote, or that hold such folders")
+      ->required()
+      ->expected(1, 1000)
+      ->type_name("PATH");
+  serve->add_option("--port", s.port, "Port to listen at (default: a free one)")
+      ->check(CLI::Range(1, 65535))
+      ->type_name("PORT");
+}
+
 void add_follow(CLI::App& program, FollowArguments& f) {
   CLI::App* follow = program.add_subcommand("follow", "Tell the life of one ray: its waits, packets, tests and hit");
   add_config_options(*follow, f);

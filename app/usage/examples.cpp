@@ -31,6 +31,7 @@ const std::vector<Example>& examples() {
       {"inspect", "carousel inspect my.glb --frame Chair", "a camera that sees this node"},
       {"follow", "carousel follow configs/demo.yaml --pixel 320,200", "the life of one ray"},
       {"report", "carousel report out/demo", "the page of a run, again"},
+      {"serve", "carousel serve out", "all results below a folder as one site on this machine"},
       {"schema", "carousel schema config --markdown", "every key with its meaning"},
       {"completion", "source <(carousel completion bash)", "completion in this shell"},
       {"man", "carousel man | man -l -", "the manual of this program"},

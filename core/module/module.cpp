@@ -29,6 +29,7 @@ struct Known {
   const char *name, *package, *development;
 };
 constexpr std::array kKnown{
+    Known{"http", "carousel-http", "libcpp-httplib-dev"},
     Known{"mpi", "carousel-mpi", "libopenmpi-dev"},
     Known{"pictures", "carousel-pictures", "libopenimageio-dev"},
     Known{"scenes", "carousel-scenes", "libassimp-dev"},

@@ -49,7 +49,7 @@ TEST(CommandLine, HelpSaysWhatEachOptionDoesAndItsDefault) {
   EXPECT_THAT(undescribed_options("  --seed UINT=1               Seed of the random pauses\n"), IsEmpty());
   const Program program;
   for (const char* command : {"run", "check", "stress", "accuracy", "inspect", "compare", "follow", "schema", "sweep",
-                              "completion", "report"})
+                              "completion", "report", "serve"})
     EXPECT_THAT(undescribed_options(program.run({command, "--help"}).out), IsEmpty()) << command;
 }
 
@@ -62,11 +62,12 @@ TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
   for (const BadUsage& bad : std::vector<BadUsage>{
            {{},
-            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, follow, report, schema, "
+            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, follow, report, serve, "
+            "schema, "
             "completion, man"},
            {{"rnu", "a.yaml"},
             "error: unknown command rnu; did you mean run?; known are run, sweep, check, stress, accuracy, "
-            "inspect, compare, follow, report, schema, completion, man"},
+            "inspect, compare, follow, report, serve, schema, completion, man"},
            {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
            {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
            {{"run"}, "error: config is required"},
