@@ -9,7 +9,6 @@
 #include "report/run/part_table.h"
 #include "report/run/sampled_table.h"
 #include "report/run/verdict_table.h"
-#include "report/text/fit_lines.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 
@@ -44,7 +43,11 @@ class Items {
 
   /// On lines of some 110 columns, the first of which begins with a name.
   void lines(Table& table, std::string_view name) const {
-    table.text(fit_lines(fmt::format("{:<13}{}\n", name, text_), 113));
+    for (std::string_view rest = text_; !rest.empty(); name = "") {
+      const std::size_t end = std::min(rest.size() <= 100 ? rest.size() : rest.rfind("   ", 100), rest.size());
+      table.line(name, "{}", rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 3, rest.size()));
+    }
   }
 
  private:
