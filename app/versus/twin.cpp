@@ -1,10 +1,13 @@
 #include "app/versus/twin.h"
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/config/load/validate.h"
+#include "core/config/own_sections.h"
 #include "core/system/error.h"
 
 namespace carousel::app {
@@ -31,19 +34,27 @@ TestersConfig in_warps(TestersConfig testers, std::int64_t times, std::int64_t s
   return testers;
 }
 
-/// The resources that differ from the rest, each by its number.
+/// The resources that differ from the rest, each by its number; what they have for packets and collections is left out.
 std::vector<ResourceOverride> overrides_of(const Config& c) {
   std::vector<ResourceOverride> out;
-  for (std::int64_t r = 0; r < c.topology.resources; ++r)
-    for (const ResourceOverride& one : c.topology.overrides) {
-      if (!one.is_about(r)) continue;
-      ResourceOverride own;
-      own.resource = r;
-      own.testers = in_warps(one.testers, own_testers(c), c.rays.slots_per_resource);
-      own.shape_buffer_kib = one.shape_buffer_kib;
-      out.push_back(own);
-      break;
-    }
+  for (std::int64_t r = 0; r < c.topology.resources; ++r) {
+    ResourceOverride own;
+    own.resource = r;
+    bool differs = false;
+    for_each_own(c.topology, [&](const OwnOf& one) {
+      if (!one.is_about(r)) return;
+      differs = true;
+      config::for_each_own_key([&](const auto& row) {
+        const std::string_view path = row.path;
+        const bool of_packets = path.starts_with("packets.") || path.starts_with("collections.");
+        if (!of_packets && path != "memory.fetch_ahead" && one.keys->*row.own) own.own.*row.own = one.keys->*row.own;
+      });
+    });
+    if (!differs) continue;
+    const OwnSections sections = own_sections(c, r);
+    own.testers = in_warps(sections.testers, own_testers(c), sections.rays.slots_per_resource);
+    out.push_back(own);
+  }
   return out;
 }
 

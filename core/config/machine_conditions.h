@@ -57,9 +57,8 @@ constexpr bool has_many_lanes(const TestersConfig& testers) {
 }
 
 inline bool has_warps(const C& c) {
-  return c.testers.simt.warp > 0 ||
-         std::any_of(c.topology.overrides.begin(), c.topology.overrides.end(),
-                     [](const ResourceOverride& one) { return one.testers.simt.warp > 0; });
+  return c.testers.simt.warp > 0 || std::any_of(c.topology.overrides.begin(), c.topology.overrides.end(),
+                                                [](const ResourceOverride& one) { return one.testers.simt.warp > 0; });
 }
 constexpr bool has_sky_map(const C& c) {
   return c.scene.sky && !c.scene.sky->file.empty();

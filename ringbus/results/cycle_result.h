@@ -21,8 +21,8 @@
 #include "core/types/unit_kind.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/results/dram_use.h"
-#include "ringbus/results/stop_ring_use.h"
 #include "ringbus/results/ray_times.h"
+#include "ringbus/results/stop_ring_use.h"
 #include "ringbus/results/trace.h"
 #include "ringbus/time/clock.h"
 

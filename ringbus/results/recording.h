@@ -16,7 +16,7 @@ struct Recording {
   std::uint32_t track = 0;     ///< its first
   RayLog* ray = nullptr;
   std::uint32_t contexts = 0;  ///< tracks of test contexts, as many for each resource
-  RayTimes* times = nullptr;  ///< the ledger of all rays' time
+  RayTimes* times = nullptr;   ///< the ledger of all rays' time
 
   /// A packet is issued. Only with `slices`.
   void issue(std::uint32_t packet, std::span<const PacketMember> members) const {

@@ -39,85 +39,50 @@ struct OwnKey {
 
 /// The one list of what may differ from resource to resource, beside testers. Reader, schema, pages, messages, rules
 /// and machine go through it; core/config/own_sections.h applies it.
-inline constexpr std::tuple kOwnKeys{OwnKey{"slots_per_resource", "rays.slots_per_resource",
-                                            &OwnKeys::slots_per_resource,
-                                            [](auto& s) -> auto& {return s.rays.slots_per_resource;
-}  // namespace config
-, IntRange{1, kMaxSlots}, "rays", "The number of rays that it stores at a time.", "ray_slots", Better::kTwice, Relaxed {
-  .times = kStorageTimes
-}
-}  // namespace carousel
-, OwnKey{"reads_per_cycle", "rays.reads_per_cycle", &OwnKeys::reads_per_cycle,
-         [](auto& s) -> auto& {return s.rays.reads_per_cycle;
-}
-, IntRange{0, 1024}, "records/cycle", "The rays or bundles whose data its testers read from its store.", "ray_reads"
-}
-, OwnKey{"ids_per_cycle", "packets.ids_per_cycle", &OwnKeys::ids_per_cycle,
-         [](auto& s) -> auto& {return s.packets.ids_per_cycle;
-}
-, IntRange{1, 1024}, "ray IDs/cycle", "The number of a packet's ray IDs that it reads.", "dispatch"
-}
-, OwnKey{"ready", "collections.ready", &OwnKeys::ready, [](auto& s) -> auto& {return s.collections.ready;
-}
-, IntRange{1, 65536}, "rays", "The number of rays that make one of its collections ready."
-}
-, OwnKey{"capacity", "collections.capacity", &OwnKeys::capacity, [](auto& s) -> auto& {return s.collections.capacity;
-}
-, IntRange{1, 1 << 30}, "ray IDs", "Its storage for collections.", "collection_storage", Better::kTwice, Relaxed {
-  .times = kStorageTimes
-}
-}
-, OwnKey{"sort_ids_per_cycle", "collections.sort_ids_per_cycle", &OwnKeys::sort_ids_per_cycle,
-         [](auto& s) -> auto& {return s.collections.sort_ids_per_cycle;
-}
-, IntRange{0, 1024}, "ray IDs/cycle", "The ray IDs that it sorts by what comes next, and appends to collections.",
-    "sorting"
-}
-, OwnKey{"partial_after_cycles", "collections.partial_after_cycles", &OwnKeys::partial_after_cycles,
-         [](auto& s) -> auto& {return s.collections.partial_after_cycles;
-}
-, IntRange{1, 1'000'000'000}, "cycles", "The time that one of its collections waits to be filled, with partial: after."
-}
-, OwnKey{"fetch_ahead", "memory.fetch_ahead", &OwnKeys::fetch_ahead, [](auto& s) -> auto& {return s.memory.fetch_ahead;
-}
-, IntRange{0, 64}, "packets", "The number of its packets whose shapes are fetched in advance.", "fetch_ahead",
-    Better::kTwiceOrOne
-}
-, OwnKey{"shape_buffer_kib", "memory.shape_buffer_kib", &OwnKeys::shape_buffer_kib,
-         [](auto& s) -> auto& {return s.memory.shape_buffer_kib;
-}
-, IntRange{1, 1 << 20}, "KiB", "The shape data that it holds.", "shape_buffer", Better::kTwice, Relaxed {
-  .keeps_shapes = true
-}
-}
-, OwnKey{"l1_kib", "memory.l1_kib", &OwnKeys::l1_kib, [](auto& s) -> auto& {return s.memory.l1_kib;
-}
-, IntRange{1, 1 << 20}, "KiB", "The size of its own cache, where memory.l1_kib gives all resources one.", "l1_size",
-    Better::kTwice, Relaxed {
-  .keeps_shapes = true
-}
-}
-, OwnKey{"l1_ways", "memory.l1_ways", &OwnKeys::l1_ways, [](auto& s) -> auto& {return s.memory.l1_ways;
-}
-, IntRange{1, 64}, "ways", "The associativity of its own cache."
-}
-, OwnKey{"l1_lines_per_cycle", "memory.l1_lines_per_cycle", &OwnKeys::l1_lines_per_cycle,
-         [](auto& s) -> auto& {return s.memory.l1_lines_per_cycle;
-}
-, IntRange{1, 64}, "lines/cycle", "The number of lines that its own cache looks up in a cycle.", "l1_port"
-}
-, OwnKey{"l1_mshrs", "memory.l1_mshrs", &OwnKeys::l1_mshrs, [](auto& s) -> auto& {return s.memory.l1_mshrs;
-}
-, IntRange{0, 65536}, "lines", "The lines that its own cache can have on their way; 0 is no bound.", "l1_mshrs"
-}
-, OwnKey{"l1_latency_cycles", "memory.l1_latency_cycles", &OwnKeys::l1_latency_cycles,
-         [](auto& s) -> auto& {return s.memory.l1_latency_cycles;
-}
-, kCycles, "cycles", "The time of a hit in its own cache."
-}
-,
-}
-;
+inline constexpr std::tuple kOwnKeys{
+    OwnKey{"slots_per_resource", "rays.slots_per_resource", &OwnKeys::slots_per_resource,
+           [](auto& s) -> decltype(auto) { return (s.rays.slots_per_resource); }, IntRange{1, kMaxSlots}, "rays",
+           "The number of rays that it stores at a time.", "ray_slots", Better::kTwice,
+           Relaxed{.times = kStorageTimes}},
+    OwnKey{"reads_per_cycle", "rays.reads_per_cycle", &OwnKeys::reads_per_cycle,
+           [](auto& s) -> decltype(auto) { return (s.rays.reads_per_cycle); }, IntRange{0, 1024}, "records/cycle",
+           "The rays or bundles whose data its testers read from its store.", "ray_reads"},
+    OwnKey{"ids_per_cycle", "packets.ids_per_cycle", &OwnKeys::ids_per_cycle,
+           [](auto& s) -> decltype(auto) { return (s.packets.ids_per_cycle); }, IntRange{1, 1024}, "ray IDs/cycle",
+           "The number of a packet's ray IDs that it reads.", "dispatch"},
+    OwnKey{"ready", "collections.ready", &OwnKeys::ready,
+           [](auto& s) -> decltype(auto) { return (s.collections.ready); }, IntRange{1, 65536}, "rays",
+           "The number of rays that make one of its collections ready."},
+    OwnKey{"capacity", "collections.capacity", &OwnKeys::capacity,
+           [](auto& s) -> decltype(auto) { return (s.collections.capacity); }, IntRange{1, 1 << 30}, "ray IDs",
+           "Its storage for collections.", "collection_storage", Better::kTwice, Relaxed{.times = kStorageTimes}},
+    OwnKey{"sort_ids_per_cycle", "collections.sort_ids_per_cycle", &OwnKeys::sort_ids_per_cycle,
+           [](auto& s) -> decltype(auto) { return (s.collections.sort_ids_per_cycle); }, IntRange{0, 1024},
+           "ray IDs/cycle", "The ray IDs that it sorts by what comes next, and appends to collections.", "sorting"},
+    OwnKey{"partial_after_cycles", "collections.partial_after_cycles", &OwnKeys::partial_after_cycles,
+           [](auto& s) -> decltype(auto) { return (s.collections.partial_after_cycles); }, IntRange{1, 1'000'000'000},
+           "cycles", "The time that one of its collections waits to be filled, with partial: after."},
+    OwnKey{"fetch_ahead", "memory.fetch_ahead", &OwnKeys::fetch_ahead,
+           [](auto& s) -> decltype(auto) { return (s.memory.fetch_ahead); }, IntRange{0, 64}, "packets",
+           "The number of its packets whose shapes are fetched in advance.", "fetch_ahead", Better::kTwiceOrOne},
+    OwnKey{"shape_buffer_kib", "memory.shape_buffer_kib", &OwnKeys::shape_buffer_kib,
+           [](auto& s) -> decltype(auto) { return (s.memory.shape_buffer_kib); }, IntRange{1, 1 << 20}, "KiB",
+           "The shape data that it holds.", "shape_buffer", Better::kTwice, Relaxed{.keeps_shapes = true}},
+    OwnKey{"l1_kib", "memory.l1_kib", &OwnKeys::l1_kib, [](auto& s) -> decltype(auto) { return (s.memory.l1_kib); },
+           IntRange{1, 1 << 20}, "KiB", "The size of its own cache, where memory.l1_kib gives all resources one.",
+           "l1_size", Better::kTwice, Relaxed{.keeps_shapes = true}},
+    OwnKey{"l1_ways", "memory.l1_ways", &OwnKeys::l1_ways, [](auto& s) -> decltype(auto) { return (s.memory.l1_ways); },
+           IntRange{1, 64}, "ways", "The associativity of its own cache."},
+    OwnKey{"l1_lines_per_cycle", "memory.l1_lines_per_cycle", &OwnKeys::l1_lines_per_cycle,
+           [](auto& s) -> decltype(auto) { return (s.memory.l1_lines_per_cycle); }, IntRange{1, 64}, "lines/cycle",
+           "The number of lines that its own cache looks up in a cycle.", "l1_port"},
+    OwnKey{"l1_mshrs", "memory.l1_mshrs", &OwnKeys::l1_mshrs,
+           [](auto& s) -> decltype(auto) { return (s.memory.l1_mshrs); }, IntRange{0, 65536}, "lines",
+           "The lines that its own cache can have on their way; 0 is no bound.", "l1_mshrs"},
+    OwnKey{"l1_latency_cycles", "memory.l1_latency_cycles", &OwnKeys::l1_latency_cycles,
+           [](auto& s) -> decltype(auto) { return (s.memory.l1_latency_cycles); }, kCycles, "cycles",
+           "The time of a hit in its own cache."},
+};
 
 /// Calls `body` with each row.
 template <class Body>

@@ -197,8 +197,8 @@ TEST(WarpTile, PackingTakesTime) {
   EXPECT_EQ(warm_cycles(scene, config, {3, 3}), (2 + kTest) * strips + 2 * kRecord + kWire);
 }
 
-// Lanes without a ray take nodes of the one that is left, so that rays have fewer steps, and all of their strips or more.
-// A single ray may have more: what a helper finds comes before its own nearest child.
+// Lanes without a ray take nodes of the one that is left, so that rays have fewer steps, and all of their strips or
+// more. A single ray may have more: what a helper finds comes before its own nearest child.
 TEST(WarpTile, IdleLanesHelp) {
   TestScene scene = terrain();
   std::uint64_t with = 0, without = 0;
