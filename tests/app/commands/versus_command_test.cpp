@@ -18,7 +18,8 @@ using testing::HasSubstr;
 
 const char* const kRing =
     "scene: {builtin: terrain, triangles: 900}\nimage: {width: 16, height: 12, samples: 1, max_depth: 1}\n"
-    "engine: {kind: cycle}\ntopology: {resources: 2}\nrays: {slots_per_resource: 64}\ncollections: {capacity: 4096}\n";
+    "engine: {kind: cycle}\ntopology: {resources: 2}\nrays: {slots_per_resource: 64}\ncollections: {when_full: "
+    "spill}\n";
 
 TEST(VersusCommand, ComparesAMachineWithItsTwin) {
   const Program program;

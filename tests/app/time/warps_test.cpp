@@ -28,6 +28,21 @@ double fill(const nlohmann::ordered_json& report) {
   return static_cast<double>(sum(report, "ray_cycles")) / static_cast<double>(sum(report, "lane_cycles"));
 }
 
+/// The rows by bounce are all lanes of each resource.
+void expect_rows_add_up(const nlohmann::ordered_json& report) {
+  for (const auto& resource : report["resources"]) {
+    const auto& warps = resource["units"]["warps"];
+    std::uint64_t lanes = 0, rays = 0;
+    for (const auto& row : warps["bounces"]) {
+      lanes += row["lane_cycles"].get<std::uint64_t>();
+      rays += row["ray_cycles"].get<std::uint64_t>();
+    }
+    EXPECT_GT(warps["bounces"].size(), 1u);
+    EXPECT_EQ(lanes, warps["lane_cycles"]);
+    EXPECT_EQ(rays, warps["ray_cycles"]);
+  }
+}
+
 TEST_F(Warps, ChangeNoHitAndCostTime) {
   const Json alone = report(kMachine, {"testers.simt.warp=0"}), warps = report(kMachine),
              packed = report(kMachine, {"testers.simt.compaction=repack"}),
@@ -48,31 +63,17 @@ TEST_F(Warps, ChangeNoHitAndCostTime) {
   EXPECT_LT(apart["engine"]["cycles"], warps["engine"]["cycles"]);
   EXPECT_GT(shallow["engine"]["cycles"], warps["engine"]["cycles"]);
   EXPECT_GT(sum(shallow, "spilled_bytes"), sum(warps, "spilled_bytes"));
+  // Registers, and what lanes hold of nodes, are charged.
+  const Json fewer = report(kMachine, {"testers.simt.warps=2"});
+  const auto mm2 = [](const Json& r) { return r["area"]["parts"]["stacks"]["mm2"].get<double>(); };
+  EXPECT_LT(mm2(shallow), mm2(warps));
+  EXPECT_LT(mm2(fewer), mm2(warps));
+  EXPECT_GT(fewer["engine"]["cycles"], warps["engine"]["cycles"]);  // fewer warps hide less of the memory's latency
+  expect_rows_add_up(warps);
+  expect_rows_add_up(packed);
   // What is spilled goes over the wires of requests to the L2, and is counted there.
   EXPECT_GT(bytes(shallow, "shape requests"),
             bytes(warps, "shape requests") + sum(shallow, "spilled_bytes") - sum(warps, "spilled_bytes"));
-}
-
-TEST_F(Warps, MoreOfThemHideMemory) {
-  const auto cycles = [&](const char* warps) {
-    return report(kMachine, {std::string("testers.simt.warps=") + warps})["engine"]["cycles"].get<std::uint64_t>();
-  };
-  EXPECT_LT(cycles("8"), cycles("2"));
-}
-
-TEST_F(Warps, RowsByBounceAddUp) {
-  const Json r = report(kMachine);
-  for (const Json& resource : r["resources"]) {
-    const Json& warps = resource["units"]["warps"];
-    std::uint64_t lanes = 0, rays = 0;
-    for (const Json& row : warps["bounces"]) {
-      lanes += row["lane_cycles"].get<std::uint64_t>();
-      rays += row["ray_cycles"].get<std::uint64_t>();
-    }
-    EXPECT_GT(warps["bounces"].size(), 1u);
-    EXPECT_EQ(lanes, warps["lane_cycles"]);
-    EXPECT_EQ(rays, warps["ray_cycles"]);
-  }
 }
 
 TEST_F(Warps, AreTheSameOnAnyThreads) {
@@ -80,15 +81,6 @@ TEST_F(Warps, AreTheSameOnAnyThreads) {
   Sets threads = sets;
   threads.emplace_back("engine.threads=2");
   EXPECT_EQ(report(kMachine, sets)["engine"]["cycles"], report(kMachine, threads)["engine"]["cycles"]);
-}
-
-// Registers and what lanes hold of nodes are charged.
-TEST_F(Warps, HaveAnArea) {
-  const auto mm2 = [&](const char* set) {
-    return report(kMachine, {set})["area"]["parts"]["stacks"]["mm2"].get<double>();
-  };
-  EXPECT_LT(mm2("testers.simt.stack_entries=4"), mm2("testers.simt.stack_entries=16"));
-  EXPECT_LT(mm2("testers.simt.warps=2"), mm2("testers.simt.warps=4"));
 }
 
 TEST_F(Warps, ABudgetScalesWhatAllShare) {
