@@ -8,7 +8,7 @@
 #include <string>
 
 #include "accel/builders/binary/sah_build.h"
-#include "accel/builders/blas_meshes.h"
+#include "accel/builders/mesh/blas_meshes.h"
 #include "accel/builders/bounding_oriented_boxes.h"
 #include "accel/builders/bounding_spheres.h"
 #include "accel/builders/file/file_blas.h"

@@ -10,7 +10,7 @@
 
 #include "accel/builders/binary/sah_build.h"
 #include "accel/builders/level_plan.h"
-#include "accel/builders/wide_collapse.h"
+#include "accel/builders/mesh/wide_collapse.h"
 #include "core/numeric/rounding.h"
 
 namespace carousel::accel {

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "accel/builders/blas.h"
+#include "accel/builders/mesh/blas.h"
 
 namespace carousel::accel {
 

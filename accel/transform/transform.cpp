@@ -19,7 +19,7 @@ bool finite(const Mat3& m) {
   return true;
 }
 
-bool finite(const Vec3& v) {
+bool finite_vector(const Vec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
@@ -86,7 +86,7 @@ bool make_transform(const scene::Affine& m, InstanceTransform& out, TransformLev
     case TransformLevel::kInverseMatrix:
       out.form = InstanceTransform::Form::kInverseMatrix;
       out.translation = folded_translation(exact, m.translation);
-      return finite(out.translation);
+      return finite_vector(out.translation);
   }
   return false;
 }

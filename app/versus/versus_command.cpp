@@ -13,7 +13,7 @@
 #include "app/versus/versus_runs.h"
 #include "core/config/write.h"
 #include "core/system/atomic_file.h"
-#include "report/html/study_pages.h"
+#include "report/html/studies/study_pages.h"
 #include "report/read/document.h"
 #include "report/run/report_json.h"
 

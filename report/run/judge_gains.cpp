@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "core/statistics/worth_naming.h"
+#include "core/numeric/worth_naming.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 

@@ -8,6 +8,7 @@
 #include "report/rays/ray_time_table.h"
 #include "report/run/part_table.h"
 #include "report/run/sampled_table.h"
+#include "report/run/table_lines.h"
 #include "report/run/verdict_table.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
@@ -15,44 +16,6 @@
 namespace carousel::report {
 
 namespace {
-
-class Table {
- public:
-  /// A line that begins with a name on the left; an empty name continues the last one.
-  template <class... Args>
-  void line(std::string_view name, fmt::format_string<Args...> format, Args&&... args) {
-    fmt::format_to(std::back_inserter(out_), "{:<13}", name);
-    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
-    out_ += '\n';
-  }
-  void gap() { out_ += '\n'; }
-  void text(std::string_view lines) { out_ += lines; }
-  std::string take() { return std::move(out_); }
-
- private:
-  std::string out_;
-};
-
-/// Names with values, side by side on one line.
-class Items {
- public:
-  void add(std::string_view name, std::string_view value) {
-    fmt::format_to(std::back_inserter(text_), "{}{} {}", text_.empty() ? "" : "   ", name, value);
-  }
-  const std::string& text() const { return text_; }
-
-  /// On lines of some 110 columns, the first of which begins with a name.
-  void lines(Table& table, std::string_view name) const {
-    for (std::string_view rest = text_; !rest.empty(); name = "") {
-      const std::size_t end = std::min(rest.size() <= 100 ? rest.size() : rest.rfind("   ", 100), rest.size());
-      table.line(name, "{}", rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 3, rest.size()));
-    }
-  }
-
- private:
-  std::string text_;
-};
 
 /// Least, mean and greatest over the resources: the balance of the machine without a line for each resource.
 template <class Value>

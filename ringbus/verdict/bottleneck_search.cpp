@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 
 #include "core/config/own_sections.h"
-#include "core/statistics/worth_naming.h"
+#include "core/numeric/worth_naming.h"
 #include "ringbus/verdict/foretell.h"
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "core/statistics/worth_naming.h"
+#include "core/numeric/worth_naming.h"
 #include "ringbus/verdict/progress_blocks.h"
 
 namespace carousel::ringbus {

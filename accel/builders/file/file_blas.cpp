@@ -7,7 +7,7 @@
 
 #include <fmt/format.h>
 
-#include "accel/builders/primitive_blocks.h"
+#include "accel/builders/mesh/primitive_blocks.h"
 #include "core/system/error.h"
 
 namespace carousel::accel {

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "accel/builders/blas.h"
+#include "accel/builders/mesh/blas.h"
 #include "accel/builders/file/tree_file.h"
 
 namespace carousel::accel {

@@ -78,12 +78,12 @@ void check_bus_links(const Graph& graph, std::uint32_t bus, std::vector<GraphIss
 }  // namespace
 
 std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std::uint32_t>& starts) {
-  std::vector<Nodes> next(graph.nodes.size());
+  std::vector<std::vector<std::uint32_t>> next(graph.nodes.size());
   for (const Graph::Link& link : graph.links) next[link.from].push_back(link.to);
   std::vector<std::vector<bool>> out;
   for (const std::uint32_t start : starts) {
     std::vector<bool>& reached = out.emplace_back(graph.nodes.size());
-    Nodes open{start};
+    std::vector<std::uint32_t> open{start};
     reached[start] = true;
     while (!open.empty()) {
       const std::uint32_t at = open.back();

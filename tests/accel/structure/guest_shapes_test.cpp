@@ -12,7 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "accel/builders/build.h"
-#include "accel/builders/mesh_pieces.h"
+#include "accel/builders/mesh/mesh_pieces.h"
 #include "accel/builders/rank_shares.h"
 #include "accel/structure/structure_size.h"
 #include "accel/traverse/kernels.h"

@@ -1,4 +1,4 @@
-#include "accel/builders/mesh_pieces.h"
+#include "accel/builders/mesh/mesh_pieces.h"
 
 #include <algorithm>
 #include <numeric>

@@ -1,4 +1,4 @@
-#include "accel/builders/wide_collapse.h"
+#include "accel/builders/mesh/wide_collapse.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "accel/builders/blas_meshes.h"
+#include "accel/builders/mesh/blas_meshes.h"
 
 #include <cstdint>
 

@@ -1,4 +1,4 @@
-#include "accel/builders/primitive_blocks.h"
+#include "accel/builders/mesh/primitive_blocks.h"
 
 #include "accel/structure/sphere.h"
 

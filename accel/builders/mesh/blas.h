@@ -2,9 +2,9 @@
 
 #include <vector>
 
-#include "accel/builders/blas_meshes.h"
-#include "accel/builders/mesh_pieces.h"
-#include "accel/builders/wide_collapse.h"
+#include "accel/builders/mesh/blas_meshes.h"
+#include "accel/builders/mesh/mesh_pieces.h"
+#include "accel/builders/mesh/wide_collapse.h"
 #include "accel/structure/node.h"
 #include "core/config/fields/bvh.h"
 #include "core/system/executor.h"

@@ -3,8 +3,8 @@
 #include <cstdint>
 
 #include "accel/builders/binary/sah_build.h"
-#include "accel/builders/blas_meshes.h"
-#include "accel/builders/mesh_pieces.h"
+#include "accel/builders/mesh/blas_meshes.h"
+#include "accel/builders/mesh/mesh_pieces.h"
 #include "accel/structure/node.h"
 #include "core/system/executor.h"
 #include "scene/model/opacity.h"

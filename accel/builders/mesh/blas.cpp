@@ -1,4 +1,4 @@
-#include "accel/builders/blas.h"
+#include "accel/builders/mesh/blas.h"
 
 #include <algorithm>
 #include <atomic>
@@ -7,7 +7,7 @@
 #include "accel/builders/binary/reference_build.h"
 #include "accel/builders/binary/reinsertion.h"
 #include "accel/builders/binary/sah_build.h"
-#include "accel/builders/primitive_blocks.h"
+#include "accel/builders/mesh/primitive_blocks.h"
 
 namespace carousel::accel {
 

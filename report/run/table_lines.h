@@ -1,0 +1,52 @@
+#pragma once
+
+#include <algorithm>
+#include <iterator>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace carousel::report {
+
+/// The lines that a run prints.
+class Table {
+ public:
+  /// A line that begins with a name on the left; an empty name continues the last one.
+  template <class... Args>
+  void line(std::string_view name, fmt::format_string<Args...> format, Args&&... args) {
+    fmt::format_to(std::back_inserter(out_), "{:<13}", name);
+    fmt::format_to(std::back_inserter(out_), format, std::forward<Args>(args)...);
+    out_ += '\n';
+  }
+  void gap() { out_ += '\n'; }
+  void text(std::string_view lines) { out_ += lines; }
+  std::string take() { return std::move(out_); }
+
+ private:
+  std::string out_;
+};
+
+/// Names with values, side by side on one line.
+class Items {
+ public:
+  void add(std::string_view name, std::string_view value) {
+    fmt::format_to(std::back_inserter(text_), "{}{} {}", text_.empty() ? "" : "   ", name, value);
+  }
+  const std::string& text() const { return text_; }
+
+  /// On lines of some 110 columns, the first of which begins with a name.
+  void lines(Table& table, std::string_view name) const {
+    for (std::string_view rest = text_; !rest.empty(); name = "") {
+      const std::size_t end = std::min(rest.size() <= 100 ? rest.size() : rest.rfind("   ", 100), rest.size());
+      table.line(name, "{}", rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 3, rest.size()));
+    }
+  }
+
+ private:
+  std::string text_;
+};
+
+}  // namespace carousel::report
