@@ -17,6 +17,7 @@
 #include "accel/builders/quantised_boxes.h"
 #include "accel/builders/rank_shares.h"
 #include "accel/builders/top_children.h"
+#include "accel/cut/tree_cut.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
 #include "scene/model/opacity.h"
@@ -331,7 +332,12 @@ class AccelBuilder {
 Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& executor, const AccuracyConfig& accuracy,
             const CullPlanesConfig& planes, const BuildRanks* ranks, const TreeFile* trees) {
   Accel accel = AccelBuilder(scene, config, executor, accuracy, planes, ranks, trees).run();
-  if (config.storage == BvhConfig::Storage::kQuantised) quantise_boxes(accel);
+  std::vector<std::uint32_t> as_floats;
+  if (config.storage == BvhConfig::Storage::kQuantised) {
+    quantise_boxes(accel);
+    if (config.treelets.bytes > 0) as_floats = unquantised_nodes(accel);
+  }
+  if (config.treelets.bytes > 0) accel.pieces = std::make_shared<const TreePieces>(cut_tree(accel, config, as_floats));
   return accel;
 }
 

@@ -11,6 +11,7 @@
 #include "accel/structure/merged_meshes.h"
 #include "accel/structure/node.h"
 #include "accel/structure/partition.h"
+#include "accel/structure/tree_pieces.h"
 #include "accel/transform/transform.h"
 #include "core/config/fields/accuracy.h"
 #include "core/types/aabb.h"
@@ -52,6 +53,7 @@ struct Accel {
   NodeKey root;                                ///< as root_key()
   std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
   std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`
+  std::shared_ptr<const TreePieces> pieces;    ///< null: the tree is not cut (`bvh.treelets`)
   const AnyHit* any_hit = nullptr;     ///< answers any-hit calls, set before tracing; null: every surface is opaque
   HitSink* all_hits = nullptr;         ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   AccuracyConfig accuracy;             ///< arithmetic of the tests on it
@@ -64,6 +66,10 @@ struct Accel {
 
   /// A hit that is reported costs a call.
   bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }
+  /// Places on the longest way down where a ray may be in a collection: strips, or pieces of the tree.
+  int levels() const { return pieces ? pieces->depth : max_depth; }
+  /// The most other places that a ray may come to from one of them.
+  int most_ways() const { return pieces ? static_cast<int>(pieces->most_exits) : width; }
   /// Bytes of the structure at this rank.
   std::size_t size_bytes() const {
     return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + elements.size_bytes() + plane_bytes +

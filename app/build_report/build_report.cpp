@@ -54,6 +54,26 @@ report::SceneSummary summary(const Prepared& p) {
   return out;
 }
 
+std::optional<report::Treelets> treelets(const Prepared& p) {
+  if (!p.accel.pieces) return std::nullopt;
+  const accel::TreePieces& cut = *p.accel.pieces;
+  report::Treelets out;
+  out.limit = static_cast<std::uint64_t>(p.config().bvh.treelets.bytes);
+  out.count = cut.pieces.size();
+  out.most_exits = cut.most_exits;
+  out.depth = static_cast<std::uint64_t>(cut.depth);
+  out.smallest = cut.pieces.front().bytes;
+  for (const accel::TreePieces::Piece& piece : cut.pieces) {
+    out.nodes += piece.nodes;
+    out.leaves += piece.leaves;
+    out.exits += piece.exits;
+    out.bytes += piece.bytes;
+    out.smallest = std::min<std::uint64_t>(out.smallest, piece.bytes);
+    out.largest = std::max<std::uint64_t>(out.largest, piece.bytes);
+  }
+  return out;
+}
+
 report::Structure structure(const Prepared& p) {
   const accel::StructureSize size = p.structure ? *p.structure : accel::structure_size(p.accel);
   report::Structure out;
@@ -68,6 +88,7 @@ report::Structure structure(const Prepared& p) {
   const ringbus::cycle::ShapeMemory memory(p.accel, p.config().accuracy, p.config().bvh);
   out.bytes = memory.size_bytes();
   out.levels = structure_levels(p.accel, memory);
+  out.treelets = treelets(p);
   return out;
 }
 

@@ -34,7 +34,7 @@ void log_machine(const Prepared& prepared) {
                   flow.places_to_inject(), verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
     spdlog::debug("collections: places for {} IDs at each resource, of which {} keep it from blocking",
                   report::grouped(static_cast<std::uint64_t>(config.collections.capacity)),
-                  ringbus::minimum_capacity(config, prepared.accel.width, prepared.accel.max_depth));
+                  ringbus::minimum_capacity(config, prepared.accel.most_ways(), prepared.accel.levels()));
   }
   spdlog::debug(
       "traversal: {}, where a new ray waits for {} tests; {} levels; kernels for {}",

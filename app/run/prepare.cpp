@@ -235,7 +235,7 @@ void limit_memory(const Prepared& p) {
 void adapt_storage(Prepared& p) {
   const std::vector<std::string> given = p.located.positions.given();
   if (std::find(given.begin(), given.end(), "collections.capacity") != given.end()) return;
-  const std::int64_t needed = ringbus::minimum_capacity(p.config(), p.accel.width, p.accel.max_depth);
+  const std::int64_t needed = ringbus::minimum_capacity(p.config(), p.accel.most_ways(), p.accel.levels());
   std::int64_t& capacity = p.located.config.collections.capacity;
   if (needed <= capacity) return;
   spdlog::debug("collections.capacity: {}, which the reserve needs", needed);

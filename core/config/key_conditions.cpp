@@ -97,6 +97,8 @@ constexpr Row kRows[] = {
     {"collections.partial", kCycle},
     {"collections.partial_after_cycles", kPackets},
     {"collections.partial_after_cycles", kWaits},
+    {"collections.grouped", kPackets},
+    {"collections.grouped", kCutTree},
     {"collections.sort_ids_per_cycle", kPackets},
     {"collections.sort_ids_per_cycle", kCycle},
     {"collections.home", kPackets},

@@ -183,11 +183,17 @@ inline constexpr Condition kFreeSize{[](const C& c, const S&) {
 inline constexpr Condition kQueryAll{[](const C& c, const S&) { return c.rays.query == Query::kAll; },
                                      "rays.query is not all"};
 inline constexpr Condition kDepthFirst{
-    [](const C& c, const S&) { return !exchanges_packets(c) || c.collections.traversal != Traversal::kSpread; },
+    [](const C& c, const S&) {
+      return !exchanges_packets(c) || c.collections.traversal != Traversal::kSpread || c.bvh.treelets.bytes > 0;
+    },
     "no ray goes depth first"};
-inline constexpr Condition kTreelets{
-    [](const C& c, const S&) { return exchanges_packets(c) && c.collections.traversal == Traversal::kTreelet; },
-    "there are no treelets"};
+inline constexpr Condition kTreelets{[](const C& c, const S&) {
+                                       return exchanges_packets(c) && c.collections.traversal == Traversal::kTreelet &&
+                                              c.bvh.treelets.bytes == 0;
+                                     },
+                                     "no treelet is a subtree with so many triangles"};
+inline constexpr Condition kCutTree{[](const C& c, const S&) { return c.bvh.treelets.bytes > 0; },
+                                    "the tree is not cut into treelets"};
 inline constexpr Condition kBlocks{[](const C& c, const S&) { return c.collections.key == CollectionKey::kBlock; },
                                    "rays gather at nodes"};
 inline constexpr Condition kWaits{[](const C& c, const S&) { return c.collections.partial == Partial::kAfter; },

@@ -85,7 +85,9 @@ Html depth_section(const Json& report, const Json& schema) {
   Html nodes = depths("node-depths", "Nodes by depth, and the work at them", find(report, "nodes.by_depth"),
                       schema_at(schema, "properties.nodes.properties.by_depth.items"),
                       "Heat map of nodes, visits, tests, hits and misses, by depth.");
-  if (!nodes.empty() && text_at(report, "config.collections.traversal") == "treelet")
+  const bool treelets =
+      text_at(report, "config.collections.traversal") == "treelet" || find(report, "structure.treelets") != nullptr;
+  if (!nodes.empty() && treelets)
     out += markup("<p>A treelet is gone through in one visit: its tests stand at the depth of its root.</p>\n");
   out += nodes;
   out += depths("bundle-depths", "Bundles by depth", find(report, "tests.bundles.by_depth"),

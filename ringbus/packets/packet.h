@@ -36,6 +36,19 @@ struct NextNode {
   bool any = false;  ///< false: the ray is complete
 };
 
+/// A child outside a treelet, to which a member of its packet goes on. The ray's owner writes it into the packet.
+struct PacketExit {
+  std::uint32_t member = 0;
+  NextNode next;
+};
+
+/// Members from `first` on that are at another treelet than those before them (`collections.grouped`).
+struct PacketGroup {
+  std::uint32_t first = 0;
+  std::uint16_t depth = 0;
+  accel::NodeKey key;
+};
+
 /// A moving collection. It belongs to one resource, is allocated once, and is written only by the resource that has
 /// its index: the link's queue passes the right to write along with the index.
 struct Packet {
@@ -53,9 +66,19 @@ struct Packet {
   std::vector<PacketMember> members;
   float nearest[accel::kMaxWidth] = {};  ///< by lane: the nearest entry of any member
   std::vector<NextNode> next;            ///< one a member, where the traversal writes it
+  std::vector<PacketExit> exits;         ///< where rays leave treelets of the whole tree for all children at once
+  std::vector<PacketGroup> groups;       ///< behind the members at `key`, in order; empty: all are there
   std::vector<RayRequest> requests;      ///< kRays: the rays not yet taken
   std::vector<ResourceId> addresses;     ///< kRays with addressed placement: one a request
   std::vector<std::uint64_t> owners;     ///< a bit for each resource that owns a member
+
+  /// The treelet at which a member is.
+  PacketGroup place_of(std::size_t member) const {
+    PacketGroup out{0, depth, key};
+    for (const PacketGroup& group : groups)
+      if (group.first <= member) out = group;
+    return out;
+  }
 };
 
 }  // namespace carousel::ringbus

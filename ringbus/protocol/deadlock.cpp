@@ -33,7 +33,7 @@ std::int64_t minimum_capacity(const Config& config, int width, int max_depth) {
 }
 
 std::vector<ConfigIssue> check_storage(const Config& config, const accel::Accel& accel) {
-  const std::int64_t needed = minimum_capacity(config, accel.width, accel.max_depth);
+  const std::int64_t needed = minimum_capacity(config, accel.most_ways(), accel.levels());
   std::vector<ConfigIssue> issues;
   const auto check = [&](std::string key, std::int64_t found) {
     if (found >= needed) return;

@@ -11,7 +11,9 @@ Offer Offering::offer(bool partial, Packet& packet) {
     bool storage = false;
     const std::optional<CollectionId> chosen = choose(partial, storage);
     if (!chosen) return storage ? Offer::kStorage : Offer::kNothing;
+    const bool ready = collections_.is_ready(*chosen);
     take(*chosen);
+    if (group_rays_ > 0 && !ready) group_up();
   } else if (in_flight_ > 0 && !storage_.fits(blocks_needed(block_.key, 0), 0)) {
     return Offer::kStorage;
   }
@@ -46,6 +48,28 @@ void Offering::take(CollectionId chosen) {
   const bool tested = homes_.of(block_.key) == rays_.owner();
   const std::int32_t packets = tested ? traversal_.tests_at(block_.key) / traversal_.collections_at(block_.key) : 1;
   block_.packets = static_cast<std::uint32_t>(packets);
+  block_.needed = tested ? traversal_.blocks_needed(block_.key, static_cast<std::uint32_t>(block_.rays.size())) : 0;
+  block_.groups.clear();
+}
+
+/// Fills the block up with the next collections that are not ready either, in the order of the policy, as long as they
+/// fit as a whole: into the packet, and their children into storage.
+void Offering::group_up() {
+  if (homes_.of(block_.key) != rays_.owner()) return;
+  while (block_.rays.size() < group_rays_) {
+    const std::optional<CollectionId> next = collections_.best(true);
+    if (!next || collections_.is_ready(*next)) return;
+    const PacketGroup group{static_cast<std::uint32_t>(block_.rays.size()), collections_.depth(*next),
+                            collections_.key(*next)};
+    const std::uint32_t rays = collections_.front_rays(*next);
+    if (block_.rays.size() + rays > group_rays_ || homes_.of(group.key) != rays_.owner()) return;
+    const std::uint32_t needed = block_.needed + traversal_.blocks_needed(group.key, rays);
+    if (!storage_.fits(needed, collections_.front_blocks(*next))) return;
+    collections_.take(*next, more_);
+    block_.rays.insert(block_.rays.end(), more_.begin(), more_.end());
+    block_.groups.push_back(group);
+    block_.needed = needed;
+  }
 }
 
 void Offering::fill(Packet& packet) {
@@ -56,9 +80,8 @@ void Offering::fill(Packet& packet) {
   packet.key = block_.key;
   packet.depth = block_.depth;
   packet.lanes = traversal_.lanes(block_.shape + block_.next_packet);
-  packet.reserved_blocks = packet.kind == PacketKind::kTest
-                               ? traversal_.blocks_needed(block_.key, static_cast<std::uint32_t>(rays.size()))
-                               : 0;
+  packet.reserved_blocks = packet.kind == PacketKind::kTest ? block_.needed : 0;
+  packet.groups = block_.groups;
   std::fill(std::begin(packet.nearest), std::end(packet.nearest), kInfinity);
   if (packet.kind == PacketKind::kMemberships) packet.nearest[0] = block_.entry;
   packet.answered = packet.named = 0;

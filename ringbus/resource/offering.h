@@ -28,15 +28,17 @@ enum class Offer {
 class Offering {
  public:
   /// Keeps references. `local` is true if all rays of a packet live at its owner. `events` may be null.
+  /// With `group_rays` a packet from a collection that is not ready takes in others of its kind, up to so many rays.
   Offering(const RayStore& rays, CollectionStore& collections, StorageRule& storage, const Homes& homes,
-           const TraversalMethod& traversal, bool local, EventSink* events)
+           const TraversalMethod& traversal, bool local, EventSink* events, std::size_t group_rays = 0)
       : rays_(rays),
         collections_(collections),
         storage_(storage),
         homes_(homes),
         traversal_(traversal),
         local_(local),
-        events_(events) {}
+        events_(events),
+        group_rays_(group_rays) {}
 
   /// Fills `packet` from the next collection: among the ready ones, or with `partial` among all.
   Offer offer(bool partial, Packet& packet);
@@ -57,11 +59,13 @@ class Offering {
   struct Block {
     std::vector<RayId> rays;
     std::vector<std::uint32_t> joined;  // one a ray
+    std::vector<PacketGroup> groups;  // behind those at `key`
     accel::NodeKey key;
     std::uint8_t shape = 0;
     std::uint16_t depth = 0;
     float entry = 0;
     std::uint32_t next_packet = 0, packets = 0;
+    std::uint32_t needed = 0;  // blocks that the retirement of a packet may take
   };
 
   std::optional<CollectionId> choose(bool partial, bool& storage);
@@ -69,6 +73,7 @@ class Offering {
     return homes_.away(key) ? 0 : traversal_.blocks_needed(key, rays);  // they only travel on from here
   }
   void take(CollectionId chosen);
+  void group_up();
   void fill(Packet& packet);
   void mark_owners(Packet& packet) const;
   void record(const Event& event) {
@@ -83,6 +88,8 @@ class Offering {
   const TraversalMethod& traversal_;
   bool local_;
   EventSink* events_;
+  std::size_t group_rays_;
+  std::vector<RayId> more_;  // scratch
   Block block_;
   std::uint32_t in_flight_ = 0;
 };

@@ -34,7 +34,8 @@ TraversalSettings traversal_settings(const ResourceSettings& settings) {
           settings.packets.made_per,
           settings.bundles,
           settings.treelet_triangles,
-          settings.scene_size};
+          settings.scene_size,
+          settings.treelets};
 }
 
 }  // namespace
@@ -47,9 +48,10 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
       packet_rays_(static_cast<std::size_t>(settings.packets.rays)),
       collections_(collection_settings(settings, accel, hooks.spills_take_time)),
       homes_(settings.collections.home, store.owner(), settings.resources, accel.partition.get()),
-      storage_(settings.collections, block_rays(settings.collections, settings.packets),
-               reserve_blocks(settings.collections, settings.packets, settings.bundles, accel.width, accel.max_depth),
-               initial_collections(traversal_settings(settings), accel), collections_),
+      storage_(
+          settings.collections, block_rays(settings.collections, settings.packets),
+          reserve_blocks(settings.collections, settings.packets, settings.bundles, accel.most_ways(), accel.levels()),
+          initial_collections(traversal_settings(settings), accel), collections_),
       completion_(store, hooks.transforms),
       any_hit_(store, hooks.hold_any_hit_rays),
       traversal_(make_traversal(
@@ -57,7 +59,8 @@ Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, 
           {accel, store, completion_, any_hit_, hooks.events != nullptr ? hooks.events->cull_counts() : nullptr,
            hooks.subtree_tracer, hooks.transforms, hooks.blocks})),
       offering_(store, collections_, storage_, homes_, *traversal_,
-                settings.resources == 1 || settings.collections.home == Home::kLocal, hooks.events) {}
+                settings.resources == 1 || settings.collections.home == Home::kLocal, hooks.events,
+                settings.collections.grouped ? packet_rays_ : 0) {}
 
 Resource::~Resource() = default;
 

@@ -10,7 +10,8 @@ ResourceSettings resource_settings(const Config& config, float scene_size) {
           config.bundles,
           config.bvh.treelet_triangles,
           static_cast<std::uint32_t>(config.topology.resources),
-          scene_size};
+          scene_size,
+          config.bvh.treelets.bytes > 0};
 }
 
 }  // namespace carousel::ringbus

@@ -20,6 +20,7 @@ struct ResourceSettings {
   std::int64_t treelet_triangles = 2048;  ///< treelet traversal: a subtree of so many or fewer is one test
   std::uint32_t resources = 1;            ///< resources of the machine, for `home: hash`
   float scene_size = 1;                   ///< scale of entry distances and of boxes
+  bool treelets = false;                  ///< rays gather at treelets of the whole tree
 };
 
 ResourceSettings resource_settings(const Config& config, float scene_size);

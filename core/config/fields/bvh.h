@@ -12,6 +12,9 @@ struct BvhConfig {
   std::int64_t width = 8;
   std::int64_t leaf_triangles = 4;
   std::int64_t treelet_triangles = 2048;
+  struct Treelets {
+    std::int64_t bytes = 0;
+  } treelets;
   enum class Elements { kBoxes, kSpheres, kOrientedBoxes } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
   enum class Storage { kFull, kQuantised } storage = Storage::kFull;
@@ -64,12 +67,21 @@ inline constexpr auto kEnumNames<BvhConfig::Quality> = [] {
 namespace config {
 
 template <class V>
+void describe(V& v, BvhConfig::Treelets& c) {
+  v.field("bytes", c.bytes, IntRange{0, 1 << 20}, "bytes",
+          "The whole tree is cut into connected pieces of at most this size, stored one after another, and rays gather "
+          "at pieces: a visit loads a piece once and takes its rays through it depth first. A node or leaf that is "
+          "larger is a piece by itself. With 0 rays gather at nodes.");
+}
+
+template <class V>
 void describe(V& v, BvhConfig& c) {
   v.field("width", c.width, IntRange{2, 8}, "children", "The largest number of children of an inner node.");
   v.field("leaf_triangles", c.leaf_triangles, IntRange{1, 16}, "triangles",
           "The largest number of triangles of a leaf.");
   v.field("treelet_triangles", c.treelet_triangles, IntRange{1, 1 << 24}, "triangles",
           "The largest size of the subtrees that traversal: treelet crosses in one visit.");
+  v.section("treelets", c.treelets, "Pieces of the whole tree.");
   v.choice("elements", c.elements,
            "The children of a node are bounded by boxes along the axes, by spheres, or by boxes that are turned.");
   v.field(

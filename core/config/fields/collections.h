@@ -77,6 +77,7 @@ struct CollectionsConfig {
   Select select = Select::kFullFirst;
   Partial partial = Partial::kAhead;
   std::int64_t partial_after_cycles = 1000;
+  bool grouped = false;
   Home home = Home::kIssuer;
   std::int64_t capacity = 65536, sort_ids_per_cycle = 0;
   WhenFull when_full = WhenFull::kReserve;
@@ -112,6 +113,9 @@ void describe(V& v, CollectionsConfig& c) {
       .only(EngineKind::kCycle, "clock for collections that wait", Partial::kAfter);
   v.field("partial_after_cycles", c.partial_after_cycles, IntRange{1, 1'000'000'000}, "cycles",
           "The time that a collection waits to be filled, with partial: after.");
+  v.field("grouped", c.grouped, "",
+          "A packet of a collection that is not ready is filled up with the rays of the next such collections, each of "
+          "which then goes through its own treelet; with bvh.treelets.");
   v.field("sort_ids_per_cycle", c.sort_ids_per_cycle, IntRange{0, 1024}, "ray IDs/cycle",
           "The ray IDs that a resource sorts by what comes next, and appends to collections, in a cycle. 0: as many as "
           "come.")

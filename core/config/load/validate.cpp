@@ -11,6 +11,7 @@
 #include "core/config/load/memory_rules.h"
 #include "core/config/load/network_rules.h"
 #include "core/config/load/rank_rules.h"
+#include "core/config/load/treelet_rules.h"
 #include "core/config/load/warp_rules.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
@@ -38,6 +39,7 @@ class Rules {
     stored_transform_fits();
     verification_fits();
     config::check_bounds(c, breach);
+    config::check_treelets(c, breach);
     shapes_reach_the_resources();
     effects_are_known();
     ordered_needs_strips();
@@ -198,7 +200,9 @@ class Rules {
   }
 
   void order_has_a_depth_first_ray() {
-    if (c.collections.order == ChildOrder::kNearest || c.topology.shape == TopologyShape::kIndependent) return;
+    if (c.collections.order == ChildOrder::kNearest || c.topology.shape == TopologyShape::kIndependent ||
+        c.bvh.treelets.bytes > 0)
+      return;
     if (c.collections.traversal == Traversal::kSpread)
       issue("collections.order",
             "traversal: spread takes a ray into all children at once; expected nearest, or traversal: ordered or "

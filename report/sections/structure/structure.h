@@ -33,6 +33,28 @@ void describe(V& v, const StructureLevel& r) {
   v.field("bytes", r.bytes(), "bytes", "nodes, leaves and records");
 }
 
+/// The whole tree cut into connected pieces (`bvh.treelets`).
+struct Treelets {
+  std::uint64_t limit = 0, count = 0, nodes = 0, leaves = 0, exits = 0, most_exits = 0, depth = 0;
+  std::uint64_t bytes = 0, smallest = 0, largest = 0;
+};
+
+template <class V>
+void describe(V& v, const Treelets& r) {
+  v.field("limit", r.limit, "bytes", "bvh.treelets.bytes; a node or leaf that is larger is a treelet by itself");
+  v.field("count", r.count, "treelets", "connected pieces, those of a mesh once for all of its placements");
+  v.field("nodes", r.nodes, "nodes", "inner nodes in them");
+  v.field("leaves", r.leaves, "nodes", "leaves in them");
+  v.field("bytes", r.bytes, "bytes", "size of their nodes and leaves, without gaps between treelets");
+  v.field("smallest", r.smallest, "bytes", "size of the smallest");
+  v.field("mean", ratio(r.bytes, r.count), "bytes", "mean size");
+  v.field("largest", r.largest, "bytes", "size of the largest");
+  v.field("fill", ratio(r.bytes, r.count * r.limit), "", "mean size over the limit; above 1 where nodes are larger");
+  v.field("exits", ratio(r.exits, r.count), "treelets/treelet", "mean number of ways from a treelet into others");
+  v.field("most_exits", r.most_exits, "treelets", "the largest such number");
+  v.field("depth", r.depth, "treelets", "treelets on the longest way down, through all levels of the structure");
+}
+
 /// The contents of the structures over meshes, each counted once, and all levels of the structure.
 struct Structure {
   std::uint64_t primitives = 0, references = 0, duplicates = 0;
@@ -40,6 +62,7 @@ struct Structure {
   double surface_cost = 0;
   std::optional<std::uint64_t> bytes;
   std::optional<std::vector<StructureLevel>> levels;
+  std::optional<Treelets> treelets;
 };
 
 template <class V>
@@ -58,6 +81,7 @@ void describe(V& v, const Structure& r) {
       "bytes", r.bytes, "bytes",
       "size of the whole structure in the machine's memory, gaps for alignment included; absent where ranks share it");
   v.section("levels", r.levels, "the structure level by level, from the top down; absent where ranks share it");
+  v.section("treelets", r.treelets, "pieces of the whole tree; absent without bvh.treelets");
 }
 
 }  // namespace carousel::report

@@ -33,6 +33,8 @@ struct PacketLoad {
 ///   per ray: ID 4; and of a strip of boxes a result bit a shape (1 byte; with `shapes: single` 1 bit), or with ordered
 ///   traversal the next node 12 (key 8, entry 4)
 ///   per shape of a strip of boxes: nearest entry 4, for policies that read them (with `shapes: single` of the one)
+///   per ray and child of a treelet of the whole tree that it goes on to at once: its member 1, the node's key 8, and
+///   the entry 4, for policies that read them; per group of rays at another treelet: key 8, depth 1, count 1
 ///   per new ray that looks for a slot: its record 64; with addressed placement its address 2
 ///   with `carry: data` the shapes that are tested (ShapeMemory::shapes()), and below an instance what is stored of its
 ///   transform
@@ -123,7 +125,7 @@ class PacketSize {
   }
 
  private:
-  static constexpr std::uint32_t kHeader = 16, kId = 4, kEntry = 4, kNext = 12, kNumber = 2;
+  static constexpr std::uint32_t kHeader = 16, kId = 4, kEntry = 4, kNext = 12, kNumber = 2, kExit = 9, kGroup = 10;
 
   bool has_boxes(const Packet& packet, bool treelet) const { return packet.key.ref.is_inner() && !treelet; }
   std::uint32_t entry_bytes() const { return entries_ ? kEntry : 0; }
@@ -152,8 +154,11 @@ class PacketSize {
     if (packet.kind == PacketKind::kRays)
       bytes += static_cast<std::uint32_t>(sizeof(RayRecord) * packet.requests.size() + 2 * packet.addresses.size());
     if (packet.kind != PacketKind::kTest || results_grow()) return bytes;
+    bytes += kGroup * static_cast<std::uint32_t>(packet.groups.size());
     if (ordered_)
       bytes += kNext * n;
+    else if (treelet)
+      bytes += (kExit + entry_bytes()) * static_cast<std::uint32_t>(packet.exits.size());
     else if (has_boxes(packet, treelet))
       bytes += box_results(packet, n);
     return bytes;

@@ -8,6 +8,7 @@
 
 #include "accel/builders/quantised_boxes.h"
 #include "accel/structure/accel.h"
+#include "accel/structure/shape_bytes.h"
 #include "accel/transform/instance_data.h"
 #include "core/config/fields/bvh.h"
 #include "core/config/fields/memory.h"
@@ -35,7 +36,8 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
 /// nodes have 64 or 80 bytes, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and
-/// each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips.
+/// each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips. With `bvh.treelets` nodes and leaves
+/// stand where their pieces say (accel::TreePieces).
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
@@ -47,10 +49,10 @@ class ShapeMemory {
               const MemoryConfig& memory = {})
       : accel_(accel),
         quantised_(bvh.storage == BvhConfig::Storage::kQuantised),
-        node_bytes_(bytes_of_node(accel, bvh)),
+        node_bytes_(accel::node_bytes(accel, bvh)),
         strips_(bvh.leaves == BvhConfig::Leaves::kStrips ? LeafStrips(accel) : LeafStrips()),
         blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
-        instances_at_((blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
+        instances_at_(accel.pieces ? accel.pieces->bytes : (blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)),
         promoted_bytes_(accel::promoted_bytes(accuracy)),
         instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) +
@@ -90,6 +92,14 @@ class ShapeMemory {
     return {whole.address + std::min(before, whole.bytes - bytes), bytes};
   }
 
+  /// True if rays may gather at treelets of the whole tree.
+  bool has_treelets() const { return accel_.pieces != nullptr; }
+  /// The treelet of a node or leaf; there are treelets.
+  ShapeSpan treelet(accel::NodeRef ref) const {
+    const accel::TreePieces::Piece& piece = accel_.pieces->piece(ref);
+    return {piece.address, piece.bytes};
+  }
+
   /// Bytes of the whole structure, with the gaps that alignment leaves.
   std::uint64_t size_bytes() const { return instances_at_ + accel_.instances.size() * instance_room_; }
 
@@ -123,6 +133,7 @@ class ShapeMemory {
  private:
   /// All the bytes of a node or leaf.
   ShapeSpan room(accel::NodeKey key) const {
+    if (accel_.pieces) return {accel_.pieces->address(key.ref), bytes_in_piece(key.ref)};
     if (key.ref.is_inner()) {
       const std::uint32_t node = key.ref.node();
       const std::uint64_t address = std::uint64_t{node} * node_bytes_;
@@ -136,6 +147,12 @@ class ShapeMemory {
               key.ref.triangles() * kQuantisedLeafBytes};
     return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
+  }
+  std::uint32_t bytes_in_piece(accel::NodeRef ref) const {
+    if (!ref.is_inner())
+      return accel::leaf_bytes(ref, quantised_ ? BvhConfig::Storage::kQuantised : BvhConfig::Storage::kFull);
+    if (behind_before_.empty()) return node_bytes_;
+    return static_cast<std::uint32_t>(node_bytes_ + behind_before_[ref.node() + 1] - behind_before_[ref.node()]);
   }
   /// Finds the longest strips of nodes and of leaves.
   void end_by_flag() {
@@ -158,17 +175,8 @@ class ShapeMemory {
   }
 
   static constexpr std::uint32_t kPrimitiveBytes = sizeof(accel::TriangleBlock) / accel::kBlockTriangles;
-  // A node's origin, scales, references and kinds, and 6 bytes a child: H. Ylitie et al., HPG 2017, of 8 children in 80
-  // bytes; of 6 children in 64, as Vulkan-Sim (M. Saed et al., MICRO 2022) reads them, with a leaf of 64 bytes a
-  // triangle.
-  static constexpr std::uint32_t kSmallNodeBytes = 64, kSmallWidth = 6, kLargeNodeBytes = 80, kQuantisedLeafBytes = 64;
+  static constexpr std::uint32_t kQuantisedLeafBytes = accel::kQuantisedLeafBytes;
 
-  static std::uint32_t bytes_of_node(const accel::Accel& accel, const BvhConfig& bvh) {
-    if (bvh.storage == BvhConfig::Storage::kQuantised)
-      return bvh.width <= kSmallWidth ? kSmallNodeBytes : kLargeNodeBytes;
-    if (accel.elements.empty()) return sizeof(accel::Node);
-    return static_cast<std::uint32_t>(sizeof(accel::Node) - sizeof(accel::Node::plane) + accel.elements.node_bytes());
-  }
   /// Fills in primitives_before_ where each primitive has a leaf's bytes for itself; the bytes in all.
   std::uint64_t bytes_of_leaves() {
     if (strips_.bytes() > 0) return strips_.bytes();
@@ -214,9 +222,7 @@ class ShapeMemory {
       const accel::Node& node = accel_.nodes[n];
       behind_before_.push_back(bytes);
       if (full[n]) bytes += sizeof(accel::Node) - node_bytes_;
-      bytes += accel::plane_bytes(node, accel_.shared_normals);
-      for (int lane = 0; lane < node.count; ++lane)
-        if (node.direct >> lane & 1) bytes += accel_.held_leaf(node, lane).blocks() * sizeof(accel::TriangleBlock);
+      bytes += accel::bytes_behind(accel_, node);
     }
     behind_before_.push_back(bytes);
     if (bytes == 0) behind_before_.clear();

@@ -19,8 +19,10 @@ std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyCon
     blocks.emplace(accel, memory, static_cast<std::uint64_t>(collections.block_bytes));
   std::uint64_t strip = 0, transform = 0;
   const auto consider = [&](accel::NodeRef ref) {
-    if (ref.is_instance()) return;
-    const ShapeSpan span = blocks ? blocks->span(ref) : memory.strip({kNoInstance, ref});
+    if (ref.is_instance() || (accel.pieces && !accel.pieces->holds(ref))) return;
+    const ShapeSpan span = blocks                  ? blocks->span(ref)
+                           : memory.has_treelets() ? memory.treelet(ref)
+                                                   : memory.strip({kNoInstance, ref});
     strip = std::max(strip, ShapeBuffer::places_to_ask(span));
   };
   for (std::uint32_t i = 0; i < accel.nodes.size(); ++i) {
@@ -46,7 +48,10 @@ std::vector<ConfigIssue> check_shape_buffer(const Config& config, const accel::A
     issue.message = fmt::format(
         "a test needs a whole {} and its transform at once, and this scene's largest do not fit; expected at least "
         "{}, found {}",
-        config.collections.key == CollectionKey::kBlock ? "block of memory" : "strip", least, kib);
+        config.collections.key == CollectionKey::kBlock ? "block of memory"
+        : accel.pieces                                  ? "treelet"
+                                                        : "strip",
+        least, kib);
   };
   check("memory.shape_buffer_kib", config.memory.shape_buffer_kib);
   for_each_own(config.topology, [&](const OwnOf& one) {

@@ -67,6 +67,7 @@ class CollectionStore {
   accel::NodeKey key(CollectionId id) const { return collections_[id.value].key; }
   std::uint8_t shape(CollectionId id) const { return collections_[id.value].shape; }
   std::uint16_t depth(CollectionId id) const { return collections_[id.value].depth; }
+  bool is_ready(CollectionId id) const { return collections_[id.value].ready; }
   float entry(CollectionId id) const { return collections_[id.value].entry; }
   /// How many rays the next take() gives.
   std::uint32_t front_rays(CollectionId id) const;

@@ -10,6 +10,7 @@
 #include "core/types/enum_names.h"
 #include "ringbus/resource/traversal/bundled.h"
 #include "ringbus/resource/traversal/ordered.h"
+#include "ringbus/resource/traversal/pieces.h"
 #include "ringbus/resource/traversal/single_shape.h"
 #include "ringbus/resource/traversal/spread.h"
 #include "ringbus/resource/traversal/treelet.h"
@@ -65,6 +66,8 @@ const Row& row_of(Traversal traversal) {
 }  // namespace
 
 std::unique_ptr<TraversalMethod> make_traversal(const TraversalSettings& settings, const VisitContext& context) {
+  if (settings.treelets)
+    return std::make_unique<PieceTraversal>(context, settings.order, !one_collection_a_ray(settings.traversal));
   Method method = row_of(settings.traversal).make(settings, context);
   if (settings.bundles.size == 0) return method;
   return std::make_unique<BundledTraversal>(settings.bundles, settings.scene_size, context, std::move(method));

@@ -22,6 +22,7 @@ struct TraversalSettings {
   BundlesConfig bundles;
   std::int64_t treelet_triangles = 2048;
   float scene_size = 1;
+  bool treelets = false;
 };
 
 std::unique_ptr<TraversalMethod> make_traversal(const TraversalSettings& settings, const VisitContext& context);

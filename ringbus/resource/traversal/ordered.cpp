@@ -5,8 +5,8 @@
 #include <tuple>
 
 #include "accel/traverse/kernels.h"
-#include "ringbus/resource/traversal/last_first.h"
 #include "ringbus/resource/visit/count_children.h"
+#include "ringbus/resource/visit/last_first.h"
 
 namespace carousel::ringbus {
 

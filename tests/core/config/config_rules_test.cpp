@@ -350,6 +350,21 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"OrderOfNativeTreelets", SCENE "collections: {traversal: treelet, order: stored}\n",
                   "test.yaml:2:42: collections.order: the native engine takes a ray through a treelet nearest first; "
                   "expected nearest, or engine.kind: cycle, found stored"},
+        BadConfig{"TreeletsOfTestCells",
+                  SCENE "bvh: {treelets: {bytes: 4096}}\nengine: {kind: cycle}\ntopology: {shape: bus}\n",
+                  "test.yaml:4:19: topology.shape: the rays of a treelet are tested one by one and leave it for "
+                  "different places, which an answer on a bus does not carry; expected a ring or another network, "
+                  "found bus, or bvh.treelets.bytes: 0"},
+        BadConfig{"TreeletsOfSingleShapes", SCENE "bvh: {treelets: {bytes: 4096}}\npackets: {shapes: single}\n",
+                  "test.yaml:3:19: packets.shapes: a visit takes rays through a whole treelet; expected strip, found "
+                  "single, or bvh.treelets.bytes: 0"},
+        BadConfig{"TreeletsOfStrips",
+                  SCENE "bvh: {treelets: {bytes: 4096}, leaves: strips}\nengine: {kind: cycle}\n",
+                  "test.yaml:2:40: bvh.leaves: strips are not cut into treelets yet; expected triangles, or "
+                  "bvh.treelets.bytes: 0; found strips"},
+        BadConfig{"GroupedNodes", SCENE "collections: {grouped: true}\n",
+                  "test.yaml:2:24: collections.grouped: only rays at treelets of the whole tree are grouped; expected "
+                  "false, or bvh.treelets.bytes above 0 and packets; found true"},
         BadConfig{"BlocksOfSpread", SCENE "collections: {key: block}\nengine: {kind: cycle}\n",
                   "test.yaml:2:14: collections.traversal: a ray that is in several collections has no node of its own "
                   "in a block; expected ordered, or collections.key: node; found spread"},

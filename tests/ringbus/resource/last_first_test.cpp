@@ -1,5 +1,5 @@
 // The order in which the children that a ray hits are put on its stack.
-#include "ringbus/resource/traversal/last_first.h"
+#include "ringbus/resource/visit/last_first.h"
 
 #include <vector>
 

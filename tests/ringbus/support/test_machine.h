@@ -47,7 +47,7 @@ inline void give_room(Cell& cell, const accel::Accel& accel) {
   if (c.collections.when_full == WhenFull::kSpill)
     c.collections.capacity = 4 * c.packets.rays;
   else
-    c.collections.capacity = minimum_capacity(c, accel.width, accel.max_depth) * (cell.tight_storage ? 1 : 50);
+    c.collections.capacity = minimum_capacity(c, accel.most_ways(), accel.levels()) * (cell.tight_storage ? 1 : 50);
   c.collections.capacity = std::max(c.collections.capacity, c.packets.rays);
   c.memory.shape_buffer_kib =
       std::max(c.memory.shape_buffer_kib, cycle::least_shape_buffer_kib(accel, c.accuracy, {}, {}, c.collections));

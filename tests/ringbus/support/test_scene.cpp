@@ -21,10 +21,10 @@ std::string levels(const AccuracyConfig& a) {
 }
 
 std::string structure(const BvhConfig& b, const CullPlanesConfig& p) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} planes {} {} {} {} {} {}", b.width, b.leaf_triangles,
+  return fmt::format("{} {} {} {} {} {} {} {} {} treelets {} planes {} {} {} {} {} {}", b.width, b.leaf_triangles,
                      enum_name(b.storage), enum_name(b.elements), b.mixed_triangles, b.top_triangles, b.levels,
-                     enum_name(b.builder), b.duplicates, p.count, enum_name(p.nodes), enum_name(p.fit),
-                     p.shared_normals, enum_name(p.order), enum_name(p.levels));
+                     enum_name(b.builder), b.duplicates, b.treelets.bytes, p.count, enum_name(p.nodes),
+                     enum_name(p.fit), p.shared_normals, enum_name(p.order), enum_name(p.levels));
 }
 
 }  // namespace

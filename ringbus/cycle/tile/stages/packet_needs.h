@@ -27,11 +27,14 @@ class PacketNeeds {
 
   /// The shapes of a packet's tests, and what is stored of their instance's transform.
   ShapeNeed shapes(const Packet& packet, bool transform) const {
-    return {blocks_ != nullptr   ? blocks_->span(packet.key.ref)
+    return {loads_treelets()     ? memory_.treelet(packet.key.ref)
+            : blocks_ != nullptr ? blocks_->span(packet.key.ref)
             : is_treelet(packet) ? memory_.strip(packet.key)
                                  : memory_.shapes(packet.key, packet.lanes),
             transform || memory_.reads_record(packet.key) ? memory_.transform(packet.key.instance) : ShapeSpan{}};
   }
+  /// True if a visit loads a treelet of the whole tree.
+  bool loads_treelets() const { return memory_.has_treelets(); }
   bool is_treelet(const Packet& packet) const { return resource_.is_treelet(packet.key); }
 
   /// Entries that dispatch reads of a packet on a visit, and of one that is back at its owner.

@@ -64,8 +64,8 @@ class RaysInTest {
   }
 
  private:
-  std::vector<std::uint8_t> visits_;  // by slot: how many test the ray in it
-  HitBatch late_;                     // complete, and still in test
+  std::vector<std::uint16_t> visits_;  // by slot: how many test the ray in it
+  HitBatch late_;                      // complete, and still in test
   std::vector<std::uint32_t> late_slots_;
 };
 

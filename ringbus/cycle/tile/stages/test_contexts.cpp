@@ -11,7 +11,8 @@ TestContexts::TestContexts(const TileParts& parts, const TileSettings& settings,
       places_(settings.cells, settings.banks),
       broadcasts_(parts.machine.topology.broadcasts()),
       fetch_by_resource_(settings.fetches_by_resource()),
-      starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet),
+      starts_later_(fetch_by_resource_ || settings.resource.collections.traversal == Traversal::kTreelet ||
+                    settings.resource.treelets),
       forwards_(settings.testers.distributor.stragglers == TestersConfig::Distributor::Stragglers::kForward),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       phases_(contexts_.size()),
@@ -42,6 +43,7 @@ void TestContexts::begin(std::size_t place, PacketId id, Cycle now, Cycle at, bo
   context.completed.swap(parts_.resource.completed());
   context.freed_slots.swap(parts_.resource.freed_slots());
   context.subtree = parts_.needs.is_treelet(packet);
+  context.loaded = context.subtree && parts_.needs.loads_treelets() && packet.groups.empty();
   context.has_data = has_data;
   if (context.subtree) visits_.prepare(place, parts_.walk.ways());
   if (!starts_later_) return compute(place, at);
@@ -70,19 +72,22 @@ void TestContexts::start(Cycle now) {
 /// The dispatch stage has read the packet.
 void TestContexts::start_one(std::size_t place, Cycle now) {
   Context& context = contexts_[place];
-  if (context.subtree) {
-    phases_.enter(place, ContextPhase::kWalking);
-    context.begun = now;
-    visits_.begin(place, context.reads, now);
-    if (context.has_data) parts_.shapes.release(user(place), now);  // its rays have taken it
-    return;
-  }
   const Packet& packet = parts_.machine.packet(context.packet);
-  if (context.has_data || !fetch_by_resource_ ||
+  const bool takes = context.subtree ? context.loaded : fetch_by_resource_;
+  if (context.has_data || !takes ||
       parts_.shapes.take(user(place), parts_.needs.shapes(packet, context.counts.transforms > 0), now))
-    compute(place, now);
+    context.subtree ? walk(place, now) : compute(place, now);
   else
     phases_.enter(place, ContextPhase::kFetching);
+}
+
+/// Its rays go through a subtree, each by itself.
+void TestContexts::walk(std::size_t place, Cycle now) {
+  Context& context = contexts_[place];
+  phases_.enter(place, ContextPhase::kWalking);
+  context.begun = now;
+  visits_.begin(place, context.reads, now, context.loaded);
+  if (context.has_data && !context.loaded) parts_.shapes.release(user(place), now);  // its rays have taken it
 }
 
 void TestContexts::compute(std::size_t place, Cycle at) {
@@ -106,7 +111,8 @@ bool TestContexts::serve(Cycle now) {
   visits_.serve(now);
   visits_.run(now);
   if (visits_.others().empty()) return false;
-  for (const ShapeBuffer::User context : visits_.others()) compute(context, now);
+  for (const ShapeBuffer::User context : visits_.others())
+    contexts_[context].subtree ? walk(context, now) : compute(context, now);
   visits_.others().clear();
   return true;
 }
@@ -136,9 +142,9 @@ void TestContexts::end(std::size_t place, Cycle now) {
   parts_.recorder.in_context(id, place, context.since, context.begun, now);
   parts_.recorder.tested_rays(id, packet.members, context.since, context.begun, now,
                               context.subtree ? visits_.times(place) : std::span<const WalkTime>());
-  if (!context.subtree) parts_.shapes.release(user(place), now);
+  if (!context.subtree || context.loaded) parts_.shapes.release(user(place), now);
   phases_.enter(place, ContextPhase::kFree);
-  context.subtree = false;
+  context.subtree = context.loaded = false;
   parts_.any_hit.send(context.question, now);
   parts_.completions.in_test().end(context.tested);
   parts_.completions.take(context.completed, context.freed_slots);

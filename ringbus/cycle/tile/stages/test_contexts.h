@@ -100,10 +100,12 @@ class TestContexts {
     std::vector<std::uint32_t> freed_slots;
     Cycle since = 0, begun = 0;  // the packet holds it; its tests began
     bool subtree = false;
+    bool loaded = false;    // it holds all that rays in its treelet need
     bool has_data = false;  // it came from the issue queue with its shapes
   };
 
   void start_one(std::size_t context, Cycle now);
+  void walk(std::size_t context, Cycle now);
   void compute(std::size_t context, Cycle at);
   void distribute(Context& context, Cycle at);
   void end(std::size_t context, Cycle now);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "ringbus/resource/traversal/last_first.h"
+#include "ringbus/resource/visit/last_first.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -15,7 +15,9 @@ std::uint64_t entry_bytes(accel::NodeKey key) {
 
 }  // namespace
 
-void RayWalk::start(accel::NodeKey from) {
+void RayWalk::start(accel::NodeKey from, const accel::TreePieces* pieces) {
+  pieces_ = pieces;
+  exits_.clear();
   stack_.assign(1, {from, 0, 0, true});
   next_in_hand_ = true;
   instance_ = kNoInstance;
@@ -30,7 +32,10 @@ std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record, std::size_t
     bytes_.held = 0;
   }
   while (stack_.size() > beyond)
-    if (const NextNode top = pop(); !(top.entry > record.hit.t)) return top.key;
+    if (const NextNode top = pop(); !(top.entry > record.hit.t)) {
+      depth_ = top.depth;
+      return top.key;
+    }
   return std::nullopt;
 }
 
@@ -66,12 +71,20 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
   tests.transforms = tests.transforms_in_double = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
   if (!key.ref.is_inner() || mask == 0) return tests;
-  // The first child of a strip that was tested before this one goes onto the stack after all.
-  std::uint64_t bytes = next_in_hand_ ? entry_bytes(stack_.back().key) : 0;
+  std::uint64_t bytes = 0;
+  const std::size_t waiting = stack_.size();
+  const auto met = static_cast<std::ptrdiff_t>(exits_.size());
   last_first(order_, mask, entry, [&](int lane) {
-    stack_.push_back({accel.child_key(key, lane), entry[lane], 0, true});
-    bytes += entry_bytes(stack_.back().key);
+    const NextNode child{accel.child_key(key, lane), entry[lane], static_cast<std::uint16_t>(depth_ + 1), true};
+    if (pieces_ != nullptr && !pieces_->together(key.ref, accel.nodes[key.ref.node()].child[lane]))
+      return exits_.push_back(child);
+    stack_.push_back(child);
+    bytes += entry_bytes(child.key);
   });
+  std::reverse(exits_.begin() + met, exits_.end());
+  if (stack_.size() == waiting) return tests;
+  // The first child of a strip that was tested before this one goes onto the stack after all.
+  if (next_in_hand_) bytes += entry_bytes(stack_[waiting - 1].key);
   bytes -= entry_bytes(stack_.back().key);
   next_in_hand_ = true;
   bytes_.held += bytes;

@@ -22,13 +22,18 @@ class RayWalk {
  public:
   /// Keeps a reference.
   RayWalk(TransformAccount& transforms, ChildOrder order) : transforms_(&transforms), order_(order) {}
-  void start(accel::NodeKey from);
+  void start(accel::NodeKey from) { start(from, nullptr); }
+  /// With `pieces` the walk stays in the piece of `from`, and exits() are the children outside that it has hit.
+  void start(accel::NodeKey from, const accel::TreePieces* pieces);
   /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests. The
   /// oldest `beyond` entries of the stack are not at hand: where nothing else is left, there is nothing either.
   std::optional<accel::NodeKey> next(const RayRecord& record, std::size_t beyond = 0);
   /// Tests the ray, the one member of `ray`, against that strip. Returns the tests that the hardware has to make.
   /// Several strips that next() has given may be tested one after another.
   IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
+
+  /// In the order in which they were met; those of one node in the order in which they would be visited.
+  const std::vector<NextNode>& exits() const { return exits_; }
 
   /// Tells whether `instance` is another one than that of the last strip.
   bool enters(std::uint32_t instance) const { return instance != instance_; }
@@ -51,6 +56,9 @@ class RayWalk {
   ChildOrder order_;
   std::vector<NextNode> stack_;  // and on top of it the first child
   bool next_in_hand_ = false;
+  const accel::TreePieces* pieces_ = nullptr;
+  std::vector<NextNode> exits_;
+  std::uint16_t depth_ = 0;  // of the last strip, below that at which the walk began
   std::uint32_t instance_ = kNoInstance;
   StackBytes bytes_;
 };

@@ -13,7 +13,8 @@ void SubtreeVisits::prepare(std::size_t context, WalkSteps& ways) {
   visit.inverted.clear();
 }
 
-void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now) {
+void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now, bool loaded) {
+  visits_[context].loaded = loaded;
   const std::vector<std::uint32_t>& ends = visits_[context].ways.ends;
   std::uint32_t first = 0, place = 0;
   std::uint64_t records = reads - ends.size() + 1;
@@ -52,8 +53,9 @@ void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
     visit_ended_ |= --visit.rays == 0;
     return;
   }
+  if (visit.loaded) return test(index, now);
   const WalkStep& step = visit.ways.steps[ray.step];
-  ShapeNeed need{memory_.strip(step.key), {}};
+  ShapeNeed need{memory_.has_treelets() ? memory_.treelet(step.key.ref) : memory_.strip(step.key), {}};
   if (step.tests.tests[UnitKind::kTransform] > 0 || memory_.reads_record(step.key))
     need[1] = memory_.transform(step.key.instance);
   ray.phase = Ray::Phase::kWaits;
@@ -92,7 +94,11 @@ void SubtreeVisits::run(Cycle now) {
     }
     if (phase == Ray::Phase::kInTest) {
       --in_test_;
-      shapes_.release(first_user_ + index, now);
+      if (memory_.has_treelets() && has_next(rays_[index])) {
+        test(index, now);
+        continue;
+      }
+      if (!visits_[rays_[index].context].loaded) shapes_.release(first_user_ + index, now);
     }
     advance(index, now);
     if (!shapes_.ready().empty()) serve(now);

@@ -17,6 +17,8 @@ namespace carousel::ringbus::cycle {
 /// come to, is tested when the strip is there, behind the rays that were ready before it, gives the strip back, and
 /// goes to the next one. It knows no strip before its tests of the one before have ended. The rays of a visit begin
 /// in the packet's order when their records have been read. The visit ends with its last ray.
+///
+/// In a treelet of the whole tree a ray takes the whole of it once and keeps it to its end, unless the visit has it.
 class SubtreeVisits {
  public:
   /// Keeps references. Rays are users of `shapes` from `first_user` on.
@@ -26,8 +28,9 @@ class SubtreeVisits {
 
   /// Takes away the ways of the rays of a packet, which is in test context `context`.
   void prepare(std::size_t context, WalkSteps& ways);
-  /// Starts them. `reads`: the records that the visit reads; those of its rays are the last.
-  void begin(std::size_t context, std::uint32_t reads, Cycle now);
+  /// Starts them. `reads`: the records that the visit reads; those of its rays are the last. `loaded`: the context has
+  /// all that they need, to the end of the visit.
+  void begin(std::size_t context, std::uint32_t reads, Cycle now, bool loaded);
   bool ended(std::size_t context) const { return visits_[context].rays == 0; }
   /// What its rays did, in their order, when it has ended.
   std::span<const WalkTime> times(std::size_t context) const { return visits_[context].times; }
@@ -67,13 +70,15 @@ class SubtreeVisits {
   };
   struct Visit {
     WalkSteps ways;
-    std::uint32_t rays = 0;          // that have not ended
-    std::vector<WalkTime> times;     // by ray
+    std::uint32_t rays = 0;       // that have not ended
+    std::vector<WalkTime> times;  // by ray
+    bool loaded = false;
     std::vector<Inverted> inverted;  // matrices, and when
   };
 
   std::uint32_t new_ray();
   void advance(std::uint32_t index, Cycle now);
+  bool has_next(const Ray& ray) const { return ray.step != ray.end; }
   void test(std::uint32_t index, Cycle now);
 
   const ShapeMemory& memory_;

@@ -4,21 +4,44 @@
 
 namespace carousel::ringbus::cycle {
 
-void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) {
+namespace {
+
+accel::RayMembers one_of(const accel::RayMembers& members, std::size_t i) {
+  return {members.records, members.slots + i, 1, members.culls};
+}
+
+std::uint8_t* calls_of(const accel::RayMembers& members, std::size_t i) {
+  return members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i;
+}
+
+}  // namespace
+
+void SubtreeWalk::begin() {
   ways_.steps.clear();
   ways_.ends.clear();
   inverted_.clear();
+}
+
+void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) {
+  begin();
   for (std::size_t i = 0; i < members.count; ++i) {
-    walk_ray(from, {members.records, members.slots + i, 1, members.culls},
-             members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i, counts);
-    ways_.ends.push_back(static_cast<std::uint32_t>(ways_.steps.size()));
+    walk_.start(from);
+    walk_ray(one_of(members, i), calls_of(members, i), counts);
   }
 }
 
-void SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* any_hit_calls,
-                           IntersectionCounts& counts) {
+void SubtreeWalk::trace_treelets(std::span<const accel::NodeKey> from, const accel::RayMembers& members,
+                                 std::vector<PacketExit>& exits, IntersectionCounts& counts) {
+  begin();
+  for (std::size_t i = 0; i < members.count; ++i) {
+    walk_.start(from[i], accel_.pieces.get());
+    walk_ray(one_of(members, i), calls_of(members, i), counts);
+    for (const NextNode& exit : walk_.exits()) exits.push_back({static_cast<std::uint32_t>(i), exit});
+  }
+}
+
+void SubtreeWalk::walk_ray(const accel::RayMembers& ray, std::uint8_t* any_hit_calls, IntersectionCounts& counts) {
   const RayRecord& record = ray.records[*ray.slots];
-  walk_.start(from);
   while (const std::optional<accel::NodeKey> key = walk_.next(record)) {
     IntersectionCounts tests = walk_.test(accel_, *key, ray);
     ways_.steps.push_back({*key, ray_tests(tests)});
@@ -28,6 +51,7 @@ void SubtreeWalk::walk_ray(accel::NodeKey from, const accel::RayMembers& ray, st
       *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *any_hit_calls + tests.any_hit_calls));
     counts += tests;
   }
+  ways_.ends.push_back(static_cast<std::uint32_t>(ways_.steps.size()));
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -35,12 +35,14 @@ class SubtreeWalk final : public SubtreeTracer {
       : accel_(accel), walk_(transforms, order) {}
 
   void trace(accel::NodeKey from, const accel::RayMembers& members, IntersectionCounts& counts) override;
-  /// The ways of the last trace(). The caller may take them away.
+  void trace_treelets(std::span<const accel::NodeKey> from, const accel::RayMembers& members,
+                      std::vector<PacketExit>& exits, IntersectionCounts& counts) override;
+  /// The ways of the last trace. The caller may take them away.
   WalkSteps& ways() { return ways_; }
 
  private:
-  void walk_ray(accel::NodeKey from, const accel::RayMembers& ray, std::uint8_t* any_hit_calls,
-                IntersectionCounts& counts);
+  void begin();
+  void walk_ray(const accel::RayMembers& ray, std::uint8_t* any_hit_calls, IntersectionCounts& counts);
 
   const accel::Accel& accel_;
   WalkSteps ways_;
