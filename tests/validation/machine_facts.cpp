@@ -72,6 +72,10 @@ class Tree {
       const auto span = blocks_->span(key.ref);
       nodes_[number]["block"] = {span.address, span.bytes, blocks_->name(key).bits()};
     }
+    if (memory_.has_treelets()) {
+      const auto span = memory_.treelet(key.ref);
+      nodes_[number]["treelet"] = {span.address, span.bytes, accel_.pieces->piece(key.ref).exits};
+    }
     Json children = Json::array();
     if (key.ref.is_inner())
       for (int lane = 0; lane < accel_.nodes[key.ref.node()].count; ++lane)
@@ -269,6 +273,8 @@ Json run(const std::string& file) {
           {"scene_size", prepared.scene_size()},
           {"width", prepared.accel.width},
           {"max_depth", prepared.accel.max_depth},
+          {"ways", prepared.accel.most_ways()},
+          {"levels", prepared.accel.levels()},
           {"nodes", tree.json()},
           {"camera", workload.camera()},
           {"pixels", workload.pixels()},

@@ -161,9 +161,9 @@ class Storage:
         self.single = c["traversal"] == "ordered"
         self.block, self.blocks = store.block, store.capacity
         per_child = config["packets"].get("made_per") == "child"
-        width = max(facts["width"], 16) if per_child else facts["width"]
+        width = max(facts["width"], 16) if per_child else facts["ways"]
         self.collections_at_root = collections_at_root
-        self.reserve = 0 if self.single else (width - 1) * (facts["max_depth"] + 1) + width
+        self.reserve = 0 if self.single else (width - 1) * (facts["levels"] + 1) + width
         self.promised = self.held = 0
 
     def admissible(self):

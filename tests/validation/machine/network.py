@@ -15,12 +15,20 @@ class Packet:
         self.rays, self.masks = [], []
         self.nearest = []
         self.next = []            # ordered traversal: one a ray
+        self.exits = []           # where rays leave treelets of the whole tree: (ray, node, entry, depth)
+        self.groups = []          # of members from a place on that are at another treelet: (place, node, depth)
+        self.extra_reads = 0      # of the ray store, by its last tests, besides one a ray
         self.owners = set()
         self.blocks = 0           # of collection storage that its retirement may take
         self.answered = 0         # rays that have been tested; on a bus, by its owner
         self.due = 0              # on a bus: answers that have not come
         self.records = None       # of new rays that look for slots: (ray, address)
         self.left = 0             # then: resources after the next one
+
+    def place_of(self, member):
+        """The node at which a member is, and that one's depth."""
+        places = [(node, depth) for first, node, depth in self.groups if first <= member]
+        return places[-1] if places else (self.node, self.depth)
 
 
 class Token:

@@ -6,6 +6,7 @@ class PacketSize:
     def __init__(self, config, nodes, width=None):
         self.nodes = nodes
         self.ordered = config["collections"]["traversal"] == "ordered"
+        self.treelets = config["bvh"].get("treelets", {}).get("bytes", 0) > 0
         self.entry = 4 if config["collections"]["policy"] == "nearest" else 0
         self.data = config["packets"]["carry"] == "data"
         self.results = config["packets"]["results"]
@@ -104,8 +105,11 @@ class PacketSize:
         size = 16 + 4 * n
         if self.results != "mask":
             return size
+        size += 10 * len(packet.groups)
         if self.ordered:
             return size + 12 * n
+        if self.treelets:
+            return size + (9 + self.entry) * len(packet.exits)
         return size + self.box_results(packet, n, treelet)
 
     def in_order(self, packet, ids, results, treelet):

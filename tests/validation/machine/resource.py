@@ -1,6 +1,7 @@
 """A resource without a clock: its collections, and the packets that it fills from them ("Packets")."""
 from .collections import Collections, Storage
 from .traversal import Ordered, Spread
+from .treelets import Treelets
 
 NOTHING, PACKET, STORAGE = "nothing", "packet", "storage"
 
@@ -14,10 +15,14 @@ class Resource:
         self.local = self.resources == 1 or config["collections"]["home"] == "local"
         self.collections = Collections(config, facts)
         ordered = config["collections"]["traversal"] == "ordered"
-        self.traversal = (Ordered if ordered else Spread)(config, facts, nodes)
+        self.treelets = config["bvh"].get("treelets", {}).get("bytes", 0) > 0
+        self.grouped = config["collections"].get("grouped", False)
+        method = Treelets if self.treelets else Ordered if ordered else Spread
+        self.traversal = method(config, facts, nodes)
         self.storage = Storage(config, facts, self.collections, self.traversal.collections_at(0))
         self.block = config["packets"]["rays"]
         self.in_flight = 0
+        self.groups, self.needed = [], 0  # of the block that goes out
         self.rest = None  # of a block that goes out in several packets: (rays, node, depth, entry, next, packets)
         self.completed = []
 
@@ -48,8 +53,11 @@ class Resource:
                 if self.in_flight > 0:
                     return STORAGE
                 c = self.collections.deepest()
-            node, depth, entry, shape = c.node, c.depth, c.entry, c.shape
+            node, depth, entry, shape, ready = c.node, c.depth, c.entry, c.shape, c.ready
             rays = self.collections.take(c, now)
+            self.groups, self.needed = [], t.blocks_needed(node, len(rays))
+            if self.grouped and not ready:
+                self.group_up(rays, node, now)
             packets = t.tests_at(node) // t.collections_at(node) if self.home_of(node) == self.number else 1
             self.rest = (rays, node, depth, entry, shape, shape + packets)
         elif self.in_flight > 0 and not self.storage.fits(t.blocks_needed(self.rest[1], 0), 0):
@@ -59,12 +67,31 @@ class Resource:
         self.rest = (rays, node, depth, entry, number + 1, packets) if number + 1 < packets else None
         return PACKET
 
+    def group_up(self, rays, node, now):
+        """Adds the next collections that are not ready, as long as they fit as a whole."""
+        if self.home_of(node) != self.number:
+            return
+        while len(rays) < self.block:
+            c = self.collections.best(True)
+            if c is None or c.ready:
+                return
+            n = min(len(c.rays), self.block)
+            if len(rays) + n > self.block or self.home_of(c.node) != self.number:
+                return
+            needed = self.needed + self.traversal.blocks_needed(c.node, n)
+            if not self.storage.fits(needed, self.collections.front_blocks(c)):
+                return
+            self.groups.append((len(rays), c.node, c.depth))
+            rays += self.collections.take(c, now)
+            self.needed = needed
+
     def fill(self, packet, rays, node, depth, entry, number):
         packet.home = self.home_of(node)
         packet.memberships = packet.home != packet.owner
         packet.node, packet.depth = node, depth
         packet.lane = number if self.traversal.single and not self.traversal.is_treelet(node) else None
-        packet.blocks = 0 if packet.memberships else self.traversal.blocks_needed(node, len(rays))
+        packet.blocks = 0 if packet.memberships else self.needed
+        packet.groups, packet.exits = list(self.groups), []
         packet.rays, packet.masks, packet.next = list(rays), [[] for _ in rays], [None for _ in rays]
         packet.nearest = [float("inf")] * 8
         packet.entry, packet.answered = entry, 0

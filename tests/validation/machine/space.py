@@ -132,6 +132,7 @@ def draw(seed, index):
         config["collections"].update(key="block", block_bytes=pick([64, 300, 512, 1024, 65536]))
         config["testers"]["simd"]["lanes"] = 1
         memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], 64)
+    draw_treelets(random.Random(seed * 1000003 + index + 1), config)  # leaves the draws below as they are
     if r.random() < 0.25:
         scene["sky"] = {"file": str(SKY_MAP), "rotation": pick([0, 75])}
         memory["sky_map"] = pick(["free", "memory", "memory"])
@@ -142,6 +143,23 @@ def draw(seed, index):
         topology["resources"] = pick([resources, 4, 5])
         topology.update(draw_graph(r, topology["resources"], config["packets"]["results"] in ("mask", "implied_order")))
     return config
+
+
+def draw_treelets(r, config):
+    """Cuts the tree of some machines into treelets."""
+    c, bvh, topology, memory = config["collections"], config["bvh"], config["topology"], config["memory"]
+    if (config["packets"]["shapes"] != "strip" or topology["shape"] in ("bus", "central") or
+            config["packets"].get("results", "mask") != "mask" or c.get("key") == "block" or
+            config["rays"].get("banks", 0) > 0 or bvh.get("leaves") == "strips" or memory.get("strip_end") == "flag"):
+        return
+    if r.random() < 0.6:
+        bvh["treelets"] = {"bytes": r.choice([200, 600, 1500, 65536])}
+        memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], r.choice([96, 256]))
+        c["order"] = r.choice(["nearest", "nearest", "stored"])
+        if topology["shape"] != "independent":
+            c["grouped"] = r.random() < 0.4
+        if c["when_full"] == "reserve" and c["traversal"] != "ordered":
+            c.pop("capacity")
 
 
 def draw_graph(r, resources, widths):

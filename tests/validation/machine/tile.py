@@ -50,7 +50,7 @@ class Tile(Issues, Tests, Travel, Window):
         self.fetch_by_resource = config["memory"]["fetch"] != "packet"
         self.multicast = config["memory"]["fetch"] == "multicast"
         self.shared_by = config["memory"]["shared_by"]
-        self.starts_later = self.fetch_by_resource or config["collections"]["traversal"] == "treelet"
+        self.starts_later = self.fetch_by_resource or self.resource.treelets or config["collections"]["traversal"] == "treelet"
         self.partial = config["collections"]["partial"]
         self.memory_latency = config["memory"]["l2_latency_cycles"] + config["memory"]["dram_latency_cycles"]
         self.graph = hasattr(self.topology, "drawing")

@@ -13,7 +13,7 @@ class Context:
     def __init__(self):
         self.phase, self.packet, self.at, self.tests, self.slots = FREE, None, 0, None, []
         self.completed, self.visit = [], None
-        self.user, self.has_data = User(self), False
+        self.user, self.has_data, self.loaded = User(self), False, False
 
 
 class Tests:
@@ -38,15 +38,26 @@ class Tests:
     def start(self, context, now):
         """The dispatch stage has read the packet."""
         if self.resource.traversal.is_treelet(context.packet.node):
-            context.phase, context.visit = WALKING, Visit(context.tests)
-            self.visits.begin(context.visit, now)
-            if context.has_data:
-                self.shapes.release(context.user, now)
+            context.loaded = self.resource.treelets and not context.packet.groups
+            moved = any(counts.transforms > 0 for steps in context.tests for _, counts in steps)
+            if (not context.loaded or context.has_data or
+                    self.shapes.take(context.user, self.shape_data(context.packet, moved), now)):
+                self.walk(context, now)
+            else:
+                context.phase = FETCHING
         elif (context.has_data or not self.fetch_by_resource or
               self.shapes.take(context.user, self.shape_data(context.packet, context.tests.transforms > 0), now)):
             self.compute(context, now)
         else:
             context.phase = FETCHING
+
+    def walk(self, context, now):
+        """Its rays go through a treelet, each by itself."""
+        extra = context.packet.extra_reads if self.resource.treelets else 0
+        context.phase, context.visit = WALKING, Visit(context.tests, extra, context.loaded)
+        self.visits.begin(context.visit, now)
+        if context.has_data and not context.loaded:
+            self.shapes.release(context.user, now)
 
     def compute(self, context, now):
         if self.testers.distributor:
@@ -62,7 +73,10 @@ class Tests:
         ready = []
         self.visits.run(now, ready)
         for context in ready:
-            self.compute(context, now)
+            if self.resource.traversal.is_treelet(context.packet.node):
+                self.walk(context, now)
+            else:
+                self.compute(context, now)
 
     def finish_tests(self, now):
         self.serve(now)
@@ -78,7 +92,7 @@ class Tests:
                 self.end_part(context, now)
                 continue
             self.trace.note(now, self.number, "tested", packet.number, len(packet.rays))
-            if context.phase == COMPUTING:
+            if context.phase == COMPUTING or context.loaded:
                 self.shapes.release(context.user, now)
             context.phase = FREE
             self.hand_over(context.completed)
@@ -125,5 +139,5 @@ class Tests:
     def shape_data(self, packet, transform):
         """What the tests of a packet need: its shapes, and what is stored of their instance's transform."""
         node = self.nodes[packet.node]
-        shapes = tuple(node.block[:2]) if self.resource.by_block else node.shapes_of(packet.lane)
+        shapes = tuple(node.treelet[:2]) if self.resource.treelets else tuple(node.block[:2]) if self.resource.by_block else node.shapes_of(packet.lane)
         return [shapes] + ([node.transform] if transform else [])

@@ -11,6 +11,7 @@ class Node:
         self.strip, self.transform = tuple(fact["strip"] + fact["longest"]), tuple(fact["transform"])
         self.moves, self.transposed, self.promoted = fact["moves"], fact["transposed"], fact["promoted"]
         self.instance = self.key >> 32  # the highest number above the instances
+        self.treelet = fact.get("treelet")  # of the whole tree: [address, bytes, ways out]
         self.block = fact.get("block")  # [address, bytes, key] of the block of memory in which it begins
 
     def shapes_of(self, lane):

@@ -55,7 +55,9 @@ class Visitor:
 
 
 class Visit:
-    def __init__(self, ways):
+    def __init__(self, ways, extra_reads=0, loaded=False):
+        self.extra_reads = extra_reads  # of the ray store, before its first ray begins
+        self.loaded = loaded            # its context holds the treelet and its transform to the end
         self.rays = [Visitor(self, steps) for steps in ways]
         self.left = len(self.rays)
         self.inverted = {}  # by instance: the end of the inversion
@@ -74,8 +76,8 @@ class Visits:
         self.clock.wake(at)
 
     def begin(self, visit, now):
-        for ray in visit.rays:
-            at = self.testers.read(now, 1)
+        for i, ray in enumerate(visit.rays):
+            at = self.testers.read(now, 1 + (visit.extra_reads if i == 0 else 0))
             if at > now:
                 self.add(at, ray)
             else:
@@ -85,8 +87,11 @@ class Visits:
         if ray.at == len(ray.steps):
             ray.visit.left -= 1
             return
+        if ray.visit.loaded:
+            return self.test(ray, now)
         number, counts = ray.steps[ray.at]
-        need = [self.nodes[number].strip]
+        treelet = self.nodes[number].treelet
+        need = [tuple(treelet[:2]) if treelet else self.nodes[number].strip]
         if counts.transforms > 0:
             need.append(self.nodes[number].transform)
         if self.shapes.take(ray.user, need, now):
@@ -111,7 +116,11 @@ class Visits:
             ray = heapq.heappop(self.events)[2]
             if ray.in_test:
                 ray.in_test = False
-                self.shapes.release(ray.user, now)
+                if self.nodes[0].treelet and ray.at < len(ray.steps):
+                    self.test(ray, now)
+                    continue
+                if not ray.visit.loaded:
+                    self.shapes.release(ray.user, now)
             self.advance(ray, now)
             self.serve(now, others)
 
