@@ -22,11 +22,20 @@ std::optional<std::uint64_t> stops_after(const FaultsConfig::Resource& fault, Re
   return static_cast<std::uint64_t>(fault.after_rays);
 }
 
-/// A graph that is a ring follows the rules of one (FlowRules), among them the bubble.
-bool is_one_ring(const Topology& topology) {
+/// A graph that is a ring, or one in each lane, follows the rules of rings (FlowRules), among them the bubble: packets
+/// of a direction come and leave by its port.
+bool is_rings(const Topology& topology) {
   if (!topology.hubs().empty()) return false;
-  for (std::uint32_t r = 0; r < topology.resources(); ++r)
-    if (topology.ports(ResourceId(r)).out.size() != 1 || topology.ports(ResourceId(r)).in.size() != 1) return false;
+  const std::size_t directions = topology.directions();
+  for (std::uint32_t r = 0; r < topology.resources(); ++r) {
+    const Topology::Ports& ports = topology.ports(ResourceId(r));
+    if (ports.out.size() != directions || ports.in.size() != directions) return false;
+    for (std::size_t d = 0; d < directions; ++d) {
+      if (topology.wires()[ports.in[d]].direction != d) return false;
+      for (std::uint32_t stop = 0; stop < topology.resources(); ++stop)
+        if (stop != r && topology.exit(ResourceId(r), ResourceId(stop), d).port != d) return false;
+    }
+  }
   return true;
 }
 
@@ -43,7 +52,7 @@ NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSe
       links_fail_(settings.faults.links.any()),
       fault_(ResourceFault::of(settings.faults.resource, settings.clock_mhz, id)),
       stops_after_(stops_after(settings.faults.resource, id)),
-      routed_(machine_.topology.routed() && !is_one_ring(machine_.topology)),
+      routed_(machine_.topology.routed() && !is_rings(machine_.topology)),
       egress_limit_(machine_.flow.egress_limit(kReceiveBatch)),
       stops_{machine.stops.empty() ? nullptr : &machine.stops, resource_.id()},
       egress_places_(machine_.topology.room_for_all() ? std::numeric_limits<std::size_t>::max() : kReceiveBatch) {

@@ -154,7 +154,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"UnitThatServes",
                   "topology: {shape: graph, nodes: [{name: c, kind: packet_process, serves: c}], links: []}\n"
                   "testers: {simd: {lanes: 8}}\n",
-                  "test.yaml:3:71: topology.nodes.0.serves: it serves its own cells or testers, which are "
+                  "test.yaml:3:74: topology.nodes.0.serves: it serves its own cells or testers, which are "
                   "testers.simd.lanes"},
         BadConfig{"SameLane",
                   "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]', lanes: 2},\n"

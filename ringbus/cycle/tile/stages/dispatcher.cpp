@@ -107,7 +107,7 @@ void Dispatcher::take(const Decision& decision, std::size_t d, Cycle now) {
       --token.skip;
       parts_.dispatch.count_idle_visit(token.rays);
       parts_.dispatch.occupy(now, token.entries, SliceKind::kPass, id);
-      if (routed_) token.stop = static_cast<std::uint16_t>(parts_.machine.topology.next(packet, this->id()).value);
+      if (routed_) token.stop = static_cast<std::uint8_t>(parts_.machine.topology.next(packet, this->id()).value);
       decision.place->push(token, parts_.dispatch.free_at(), routed_ && pass_by(token));
       return;
     case Action::kHear:  // its owner may have issued it anew

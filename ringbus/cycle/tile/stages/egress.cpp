@@ -33,7 +33,7 @@ void Egress::depart(PacketId id, Cycle ready, bool reserved) {
   token.skip = machine_.topology.skip(packet, id_);
   if (machine_.topology.routed()) {
     token.lane = static_cast<std::uint8_t>(packet.direction);
-    token.stop = static_cast<std::uint16_t>(machine_.topology.next(packet, id_).value);
+    token.stop = static_cast<std::uint8_t>(machine_.topology.next(packet, id_).value);
     const Course course = course_of(token, machine_.topology, id_);
     out.push(token, ready, course.through);
     return;
