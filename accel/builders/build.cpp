@@ -8,11 +8,11 @@
 #include <string>
 
 #include "accel/builders/binary/sah_build.h"
-#include "accel/builders/mesh/blas_meshes.h"
 #include "accel/builders/bounding_oriented_boxes.h"
 #include "accel/builders/bounding_spheres.h"
 #include "accel/builders/file/file_blas.h"
 #include "accel/builders/group_levels.h"
+#include "accel/builders/mesh/blas_meshes.h"
 #include "accel/builders/placed_blas.h"
 #include "accel/builders/quantised_boxes.h"
 #include "accel/builders/rank_shares.h"

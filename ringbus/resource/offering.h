@@ -59,7 +59,7 @@ class Offering {
   struct Block {
     std::vector<RayId> rays;
     std::vector<std::uint32_t> joined;  // one a ray
-    std::vector<PacketGroup> groups;  // behind those at `key`
+    std::vector<PacketGroup> groups;    // behind those at `key`
     accel::NodeKey key;
     std::uint8_t shape = 0;
     std::uint16_t depth = 0;

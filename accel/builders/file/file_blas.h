@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "accel/builders/mesh/blas.h"
 #include "accel/builders/file/tree_file.h"
+#include "accel/builders/mesh/blas.h"
 
 namespace carousel::accel {
 

@@ -358,8 +358,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"TreeletsOfSingleShapes", SCENE "bvh: {treelets: {bytes: 4096}}\npackets: {shapes: single}\n",
                   "test.yaml:3:19: packets.shapes: a visit takes rays through a whole treelet; expected strip, found "
                   "single, or bvh.treelets.bytes: 0"},
-        BadConfig{"TreeletsOfStrips",
-                  SCENE "bvh: {treelets: {bytes: 4096}, leaves: strips}\nengine: {kind: cycle}\n",
+        BadConfig{"TreeletsOfStrips", SCENE "bvh: {treelets: {bytes: 4096}, leaves: strips}\nengine: {kind: cycle}\n",
                   "test.yaml:2:40: bvh.leaves: strips are not cut into treelets yet; expected triangles, or "
                   "bvh.treelets.bytes: 0; found strips"},
         BadConfig{"GroupedNodes", SCENE "collections: {grouped: true}\n",
