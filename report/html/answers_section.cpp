@@ -190,8 +190,8 @@ std::vector<StillGain> still_gains_of(const Json& report) {
   for (const Json& gain : *gains) {
     const double together = number_at(gain, "together", 1);
     out.push_back({words(text_at(gain, "name")) + (together > 1 ? fmt::format(" (of {:.0f} together)", together) : ""),
-                   fmt::format("{} ({} to {})", signed_percent(number_at(gain, "gain")),
-                               signed_percent(number_at(gain, "low")), signed_percent(number_at(gain, "high"))),
+                   fmt::format("{} ({:+.0f} to {:+.0f})", signed_percent(number_at(gain, "gain")),
+                               100 * number_at(gain, "low"), 100 * number_at(gain, "high")),
                    number_at(gain, "gain"), number_at(gain, "low"), number_at(gain, "high")});
   }
   return out;
