@@ -56,12 +56,12 @@ INSTANTIATE_TEST_SUITE_P(
                   "test.yaml:4:15: rays.banks: each tester reads a record a cycle from its own ray memory; expected 0, "
                   "found 4"},
         BadConfig{"WarpsOfPackets", SCENE "engine: {kind: cycle}\ntesters: {simt: {warp: 32}}\n",
-                  "test.yaml:3:25: testers.simt.warp: warps are of resources that trace their own rays, not those of "
+                  "test.yaml:3:24: testers.simt.warp: warps are of resources that trace their own rays, not those of "
                   "packets; expected 0, or topology.shape: independent; found 32"},
         BadConfig{"WarpsWithoutRays",
                   SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\nrays: {slots_per_resource: 16}\n"
                         "testers: {simt: {warp: 32}}\n",
-                  "test.yaml:5:25: testers.simt.warp: no warp would ever be full; expected at most "
+                  "test.yaml:5:24: testers.simt.warp: no warp would ever be full; expected at most "
                   "rays.slots_per_resource = 16, found 32"},
         BadConfig{"HelpInPackedWarps",
                   SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\n"
