@@ -1,6 +1,7 @@
-# Parts of the program that are opened on demand (core/module/module.h, docs/modules.md): one shared library a module, in
-# build/X/modules, and installed in lib/carousel/modules. A module is built where its library is found, and is glue only:
-# it holds no other code of the program than this. Plugins of others link it as carousel::plugin (docs/plugins.md).
+# Parts of the program that are opened on demand (core/module/module.h, docs/how-it-works/modules.md): one shared
+# library a module, in build/X/modules, and installed in lib/carousel/modules. A module is built
+# where its library is found, and is glue only: it holds no other code of the program than this. Plugins of others link it as carousel::plugin
+# (docs/guides/plugins.md).
 add_library(carousel_module_base STATIC core/module/module_build.cpp core/system/error.cpp core/system/plain_text.cpp)
 target_link_libraries(carousel_module_base PUBLIC carousel_options glm::glm fmt::fmt)
 target_include_directories(carousel_module_base PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}>)

@@ -8,7 +8,8 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 # One arithmetic for every machine: a contracted product makes Highway targets differ and the watertight
-# test leak (docs/design.md, One arithmetic), so contraction is off everywhere, and there is no -march=native.
+# test leak (docs/how-it-works/design.md, One arithmetic), so contraction is off everywhere, and there is no
+# -march=native.
 target_compile_options(carousel_options INTERFACE -ffp-contract=off
                        "$<BUILD_INTERFACE:-Wall;-Wextra;-Wpedantic;-Wshadow>" -Wno-psabi)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")

@@ -2,7 +2,7 @@
 //
 // The queue is FastForward: every cell says by itself whether it is full, so neither side reads the other's index.
 // J. Giacomoni, T. Moseley, M. Vachharajani, "FastForward for Efficient Pipeline Parallelism: A Cache-Optimized
-// Concurrent Lock-Free Queue", PPoPP 2008. docs/queues.md has the contract of a queue.
+// Concurrent Lock-Free Queue", PPoPP 2008. docs/guides/queues.md has the contract of a queue.
 #include <algorithm>
 #include <atomic>
 #include <cstddef>

@@ -14,10 +14,10 @@ namespace carousel::accel {
 void quantise_boxes(Accel& accel);
 
 /// The nodes of the top level that keep their boxes as floats: those with a child that is an instance with a transform.
-/// A hit has to lie in the world box of its instance (docs/design.md, What a hit is), which only the test at such a
-/// node sees to; a larger box would let in rays that graze it. A triangle's own box is made from its vertices, an
-/// instance without a transform adds nothing to the boxes below it, and a group's members are tested when a ray leaves
-/// the group.
+/// A hit has to lie in the world box of its instance (docs/how-it-works/design.md, What a hit is), which only the test
+/// at such a node sees to; a larger box would let in rays that graze it. A triangle's own box is made from its
+/// vertices, an instance without a transform adds nothing to the boxes below it, and a group's members are tested when
+/// a ray leaves the group.
 std::vector<std::uint32_t> unquantised_nodes(const Accel& accel);
 
 }  // namespace carousel::accel

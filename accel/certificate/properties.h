@@ -8,8 +8,8 @@ namespace carousel::accel {
 
 /// No box that the exact ray meets is missed.
 Property box_property();
-/// A box is entered no later than every box inside it that is entered: hits do not depend on the tree (docs/design.md,
-/// What a hit is).
+/// A box is entered no later than every box inside it that is entered: hits do not depend on the tree
+/// (docs/how-it-works/design.md, What a hit is).
 Property nested_boxes_property();
 /// One triangle: crossed or not, t, u and v.
 Property triangle_property();

@@ -1,4 +1,4 @@
-// The boxes of a block's triangles, each by itself, which a hit has to pass (docs/accuracy.md).
+// The boxes of a block's triangles, each by itself, which a hit has to pass (docs/how-it-works/accuracy.md).
 #if defined(CAROUSEL_ACCEL_OWN_BOXES_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CAROUSEL_ACCEL_OWN_BOXES_INL_H_
 #undef CAROUSEL_ACCEL_OWN_BOXES_INL_H_

@@ -24,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// The answers for triangles that the watertight test in float has found to be met: it decides in float, and only their
 /// distances and weights are computed here, by the same steps in double. So a surface stays closed as the float decides
 /// it, and t is as exact as a float can be. t lies between the distances of the corners, and the weights within the
-/// triangle, also if the line passes it by as little as the float cannot tell. docs/accuracy.md derives the bound of
-/// the error. Nothing overflows or underflows, whatever the floats.
+/// triangle, also if the line passes it by as little as the float cannot tell. docs/how-it-works/accuracy.md derives
+/// the bound of the error. Nothing overflows or underflows, whatever the floats.
 ///
 /// All triangles of a block are computed at once, as one takes as long.
 class PreciseCrossings {

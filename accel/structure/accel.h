@@ -24,7 +24,7 @@ namespace carousel::accel {
 struct InstanceNode {
   NodeRef root;  ///< inner node or leaf of the mesh's BLAS
   InstanceTransform transform;
-  Aabb world;                   ///< a hit has to lie in it (docs/design.md, What a hit is)
+  Aabb world;                   ///< a hit has to lie in it (docs/how-it-works/design.md, What a hit is)
   std::uint8_t strip_size = 0;  ///< shapes below the root
   bool group = false;           ///< the root belongs to a group's structure, described by a GroupPlacement
   bool member = false;          ///< the instance is a group's member: a ray's way to it leads through a group's nodes

@@ -12,10 +12,11 @@ namespace carousel::accel {
 
 /// The facts about the placement of a group besides its transform and its world box, the union of its members' boxes.
 ///
-/// A hit does not depend on the groups around it (docs/design.md, What a hit is, knows instances and triangles only),
-/// so a group's nodes may drop no ray that hits something below them: their boxes are tested with a slack. Let R, T
-/// place the group or something below it, x be a point at which a ray o + t d meets a triangle's box in the space of
-/// its instance, as rounded there, and L the largest distance along an axis of o from the world box and all T. Then |o
+/// A hit does not depend on the groups around it (docs/how-it-works/design.md, What a hit is, knows instances and
+/// triangles only), so a group's nodes may drop no ray that hits something below them: their boxes are tested with a
+/// slack. Let R, T place the group or something below it, x be a point at which a ray o + t d meets a triangle's box in
+/// the space of its instance, as rounded there, and L the largest distance along an axis of o from the world box and
+/// all T. Then |o
 /// - T| and |t d| are at most L, and
 /// - the rounded ray at t is off by at most gamma(9) |R^-1| 2L in the instance's space, by which the slab test of the
 ///   triangle's box may be off as well, and |R| times that in the world;

@@ -67,8 +67,8 @@ bool is_rotation(const Mat3& linear);
 
 /// A world box that holds every model point of `model`, and every place where a ray that starts in the box meets
 /// `model` after the level's rounded transform: corners in double, padded by gamma(4) (sum |R x| + |T|), by |R| times
-/// the transform's error at such a point, and one nextafter outwards (docs/accuracy.md). The error for a far origin
-/// has no bound; it grows with the distance as the slab test's own slack does.
+/// the transform's error at such a point, and one nextafter outwards (docs/how-it-works/accuracy.md). The error for a
+/// far origin has no bound; it grows with the distance as the slab test's own slack does.
 Aabb world_box(const scene::Affine& world_from_model, const Aabb& model,
                TransformLevel level = TransformLevel::kTwoStep);
 

@@ -9,8 +9,8 @@
 
 namespace carousel::accel {
 
-/// The box test of the definition of a hit (docs/design.md, What a hit is), once more: written from docs/accuracy.md
-/// for one box at a time, for the oracle alone. The kernels' own is accel/box/slab.h.
+/// The box test of the definition of a hit (docs/how-it-works/design.md, What a hit is), once more: written from
+/// docs/how-it-works/accuracy.md for one box at a time, for the oracle alone. The kernels' own is accel/box/slab.h.
 class OracleBoxTest {
  public:
   OracleBoxTest(const Ray& ray, BoxLevel level) : tmin_(ray.tmin), in_double_(level == BoxLevel::kDouble) {

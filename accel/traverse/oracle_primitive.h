@@ -14,9 +14,9 @@
 
 namespace carousel::accel {
 
-/// The definition of a hit (docs/design.md, What a hit is) in scalar code for one primitive of one instance at a time.
-/// It knows the scene and no acceleration structure. docs/design.md lists what it shares with the kernels. Immutable;
-/// any thread may call.
+/// The definition of a hit (docs/how-it-works/design.md, What a hit is) in scalar code for one primitive of one
+/// instance at a time. It knows the scene and no acceleration structure. docs/how-it-works/design.md lists what it
+/// shares with the kernels. Immutable; any thread may call.
 class OraclePrimitives {
  public:
   /// Keeps references to the scene, and to `any_hit`, which answers any-hit calls; null: every surface is opaque.

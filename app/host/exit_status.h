@@ -2,7 +2,7 @@
 
 namespace carousel::app {
 
-/// The exit statuses, a contract (docs/design.md, Exit statuses).
+/// The exit statuses, a contract (docs/how-it-works/design.md, Exit statuses).
 enum ExitStatus : int {
   kDone = 0,
   kBroken = 1,         ///< an invariant broke, a simulation got stuck, a verification failed

@@ -250,7 +250,8 @@ void fit(Prepared& p) {
 
 void choose_threads(Prepared& p) {
   const std::int64_t cores = std::max(1u, std::thread::hardware_concurrency());
-  // A second thread makes the cycle engine faster only if each thread has many resources (docs/performance.md).
+  // A second thread makes the cycle engine faster only if each thread has many resources
+  // (docs/internals/performance.md).
   const std::int64_t automatic =
       p.config().engine.kind == EngineKind::kCycle && p.config().topology.resources < 64 ? 1 : cores;
   p.threads = static_cast<std::size_t>(p.config().engine.threads.value_or(automatic));

@@ -95,7 +95,7 @@ std::string man_page(const ProgramUsage& program, const std::vector<KeyUsage>& k
       ".SH FILES\n.TP\n\\fIshare/carousel/configs\\fR\nConfigurations to begin with, and the schema by which editors "
       "complete and check them.\n"
       ".TP\n\\fIshare/doc/carousel\\fR\nThe tutorial, the description of every number of a report, and the models.\n"
-      ".SH SEE ALSO\nThe tutorial, \\fIshare/doc/carousel/tutorial.md\\fR.\n";
+      ".SH SEE ALSO\nThe tutorial, \\fIshare/doc/carousel/guides/tutorial.md\\fR.\n";
   return out;
 }
 

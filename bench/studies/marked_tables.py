@@ -1,4 +1,4 @@
-"""Tables in documents: the text between `<!-- NAME -->` and `<!-- end -->`, in docs/ or docs/data/."""
+"""Tables in documents: the text between `<!-- NAME -->` and `<!-- end -->`, in docs/."""
 import pathlib
 import re
 

@@ -45,8 +45,8 @@ inline constexpr auto kEnumNames<Verify> = [] {
   return names<Verify>({{kNone, "none"}, {kReference, "reference"}, {kEffects, "effects"}});
 }();
 
-/// The configuration tree (docs/config.md, a contract): plain structs, filled once and then only read. A part that
-/// needs one section includes only the file of that section.
+/// The configuration tree (docs/reference/config.md, a contract): plain structs, filled once and then only read. A part
+/// that needs one section includes only the file of that section.
 struct Config {
   std::int64_t schema_version = 1;
   SceneConfig scene;

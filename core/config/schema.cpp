@@ -137,14 +137,15 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     Json rays =
         one_key("rays_from",
                 file("A file of rays in CSV. Its path is relative to the config's folder, then to the working one."));
-    Json trace = one_key("memory_trace",
-                         file("A file of requests to the memory in CSV (docs/memory.md); the memory runs alone."));
+    Json trace =
+        one_key("memory_trace",
+                file("A file of requests to the memory in CSV (docs/how-it-works/memory.md); the memory runs alone."));
     Json all = Json::array({Json{{"const", "rays"}}, std::move(rays), std::move(trace),
                             one_key("traffic", object(value.traffic, "Synthetic packets."))});
     const Json any_options{{"type", "object"}, {"additionalProperties", {{"type", "number"}}}};
     const auto plugin = [&](Json name, Json options) {
       name["description"] = "A workload that one of engine.plugins brings.";
-      options["description"] = "Numbers that this workload takes; docs/plugins.md.";
+      options["description"] = "Numbers that this workload takes; docs/guides/plugins.md.";
       all.push_back({{"type", "object"},
                      {"properties", {{"plugin", std::move(name)}, {"options", std::move(options)}}},
                      {"required", {"plugin"}},

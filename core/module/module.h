@@ -12,7 +12,8 @@ namespace carousel {
 
 /// The description that a module gives of itself. A module is a shared library `NAME.so` that the program opens when it
 /// first needs it: glue between a large library of others and a struct of functions, its interface, which a header of
-/// the program declares. docs/modules.md has the rules. The first two members stay where they are in all versions.
+/// the program declares. docs/how-it-works/modules.md has the rules. The first two members stay where they are in all
+/// versions.
 struct ModuleInfo {
   static constexpr std::uint64_t kMagic = 0x6c75646f4d726143;  ///< "CarModul", in memory on a little-endian machine
 

@@ -12,7 +12,7 @@
 #include "core/types/workload.h"
 
 // What a plugin includes: a shared library of others that `engine.plugins` names, and that brings values of keys by
-// name (docs/plugins.md). ringbus/plugin/bring.h has a function for each kind.
+// name (docs/guides/plugins.md). ringbus/plugin/bring.h has a function for each kind.
 
 namespace carousel {
 

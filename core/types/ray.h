@@ -67,7 +67,7 @@ struct Hit {
   bool valid() const { return instance != kNoInstance; }
 };
 
-/// The ray data that stays in its owner's store: one cache line (docs/design.md, The machine).
+/// The ray data that stays in its owner's store: one cache line (docs/how-it-works/design.md, The machine).
 struct alignas(64) RayRecord {
   Ray ray;
   Hit hit;

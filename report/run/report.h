@@ -37,9 +37,9 @@
 
 namespace carousel::report {
 
-/// The report of one run (docs/design.md, The report, a contract): plain structs, filled by app/. Each section's
-/// fields, units and meanings stand in its file. Counts that depend on scheduling differ from run to run in the native
-/// engine with several threads.
+/// The report of one run (docs/how-it-works/design.md, The report, a contract): plain structs, filled by app/. Each
+/// section's fields, units and meanings stand in its file. Counts that depend on scheduling differ from run to run in
+/// the native engine with several threads.
 struct Report {
   std::int64_t schema_version = kDocumentVersion;
   bool incomplete = false;

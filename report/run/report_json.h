@@ -11,7 +11,7 @@
 
 namespace carousel::report {
 
-/// report.json (docs/design.md, The report). Keys stand in the order of the description.
+/// report.json (docs/how-it-works/design.md, The report). Keys stand in the order of the description.
 nlohmann::ordered_json report_json(const Report& report);
 /// Its text, indented by two. A list of numbers stands on one line, as a row of a time series has many.
 std::string json_text(const nlohmann::ordered_json& json);

@@ -17,7 +17,7 @@
 #include "ringbus/resource/collections/issue_policy.h"
 #include "ringbus/stress/queue_under_test.h"
 
-// What a plugin calls to hand over its parts (docs/plugins.md). Each has a name of a-z, 0-9 and _, which is new.
+// What a plugin calls to hand over its parts (docs/guides/plugins.md). Each has a name of a-z, 0-9 and _, which is new.
 
 namespace carousel::ringbus {
 

@@ -9,7 +9,8 @@
 
 namespace carousel::ringbus {
 
-/// Tells before a run whether the links of a machine can fill up and stop (docs/design.md, Deadlock and the end).
+/// Tells before a run whether the links of a machine can fill up and stop (docs/how-it-works/design.md, Deadlock and
+/// the end).
 DeadlockVerdict deadlock_verdict(const TopologyConfig& config);
 /// The same for what runs on it: on a graph, synthetic traffic has dangers of its own.
 DeadlockVerdict deadlock_verdict(const Config& config);

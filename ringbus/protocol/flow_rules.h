@@ -10,8 +10,8 @@
 namespace carousel::ringbus {
 
 /// The rules of `topology.flow` for one port: when a packet of the resource's own may enter the network, and when
-/// packets may come in (docs/design.md, Deadlock and the end). Holds no state; ports, queues and clocks belong to the
-/// engines.
+/// packets may come in (docs/how-it-works/design.md, Deadlock and the end). Holds no state; ports, queues and clocks
+/// belong to the engines.
 class FlowRules {
  public:
   /// `direct`: packets are sent straight to their next stop, or all nodes have room for all packets, so no ring of full

@@ -9,7 +9,7 @@ namespace carousel::ringbus {
 /// How many threads may push, or pop, at the same time.
 enum class Parties { kOne, kMany };
 
-/// A bounded queue that a link can be made of; docs/queues.md shows how to bring one's own.
+/// A bounded queue that a link can be made of; docs/guides/queues.md shows how to bring one's own.
 ///
 /// Made from a capacity of at least 1; T is trivially copyable and default-constructible.
 /// - Who may call: `try_push`, `try_push_n` and `free_places` the producers, `try_pop` and `try_pop_n` the consumers,

@@ -10,11 +10,11 @@
 
 namespace carousel::ringbus {
 
-/// Collection blocks that must stay free so that draining deepest first cannot run out (docs/design.md, Deadlock and
-/// the end): a packet retired at each level leaves at most width - 1 more blocks than it took, and one more strip's
-/// worth is in flight. If packets are made per child, an ID becomes as many as a child has shapes. With bundles an ID
-/// may become as many at one level as a bundle has rays. None are needed where a ray is in one collection at a time, as
-/// a new ray enters only if a place is left for it.
+/// Collection blocks that must stay free so that draining deepest first cannot run out (docs/how-it-works/design.md,
+/// Deadlock and the end): a packet retired at each level leaves at most width - 1 more blocks than it took, and one
+/// more strip's worth is in flight. If packets are made per child, an ID becomes as many as a child has shapes. With
+/// bundles an ID may become as many at one level as a bundle has rays. None are needed where a ray is in one collection
+/// at a time, as a new ray enters only if a place is left for it.
 std::uint32_t reserve_blocks(const CollectionsConfig& collections, const PacketsConfig& packets,
                              const BundlesConfig& bundles, int width, int max_depth);
 /// Blocks that a packet's retirement may take at most.

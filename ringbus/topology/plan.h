@@ -11,8 +11,8 @@
 
 namespace carousel::ringbus {
 
-/// Tells, before a run, whether the queues of a network can all be full at once and stay so (docs/design.md, Deadlock
-/// and the end).
+/// Tells, before a run, whether the queues of a network can all be full at once and stay so
+/// (docs/how-it-works/design.md, Deadlock and the end).
 struct DeadlockVerdict {
   bool can_deadlock = false;
   std::string rule;  ///< the rule that protects the network, with its numbers; or what is missing

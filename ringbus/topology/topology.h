@@ -11,7 +11,7 @@
 #include "ringbus/packets/packet.h"
 #include "ringbus/topology/plan.h"
 
-// A new topology takes these places and no others (docs/extending.md):
+// A new topology takes these places and no others (docs/guides/extending.md):
 //   1. its value in TopologyShape with its name and its properties (core/config/fields/topology.h); if one engine alone
 //      can run it, also its place in `.only` on the row of the key there;
 //   2. its drawing in drawn_shape.cpp, from which its plan follows;

@@ -21,7 +21,8 @@ MemoryReads reads_between(const cycle::CycleResult& result, std::uint64_t slots)
 
 /// A part of the reads that are first ones from which on the memory's gains are taken for those of cold caches. A line
 /// is read for the first time once, and again as often as the frame is large: in four times the pixels, `gpu_stack`
-/// reads 1.3 times as many lines for the first time, and a ray reads 2.7 times less (docs/cycle-engine.md).
+/// reads 1.3 times as many lines for the first time, and a ray reads 2.7 times less
+/// (docs/how-it-works/cycle-engine.md).
 inline constexpr double kColdShare = 0.25;
 
 /// Classes of parts that gain more while caches are cold: those of the way to memory behind them.

@@ -17,9 +17,9 @@ struct PictureHint {
 
 /// Decodes a PNG, a JPEG or a still WebP, without touching its transfer curve or
 /// multiplying by alpha. Grey becomes RGB, missing alpha 255, 16 bits are rounded to 8. Other formats are decoded by
-/// the module pictures (docs/modules.md). Throws std::runtime_error with a reason for none of these formats, for broken
-/// ones and where the module is missing; std::length_error, before the pixels are allocated, for more than `memory` has
-/// left; and Interrupted.
+/// the module pictures (docs/how-it-works/modules.md). Throws std::runtime_error with a reason for none of these
+/// formats, for broken ones and where the module is missing; std::length_error, before the pixels are allocated, for
+/// more than `memory` has left; and Interrupted.
 Image decode_image(std::span<const unsigned char> encoded, MemoryBudget& memory, const PictureHint& hint = {});
 
 /// Throws the std::length_error of a picture that needs more than `memory` has left.

@@ -1,4 +1,5 @@
-// The examples of docs/extending.md, taken from the page when cmake configures and used through the public interfaces.
+// The examples of docs/guides/extending.md, taken from the page when cmake configures and used through the public
+// interfaces.
 #include <fstream>
 #include <iterator>
 #include <set>
@@ -105,7 +106,8 @@ std::string text_of(const std::string& path) {
 
 // The page shows the declaration of a part of the product, which is compiled everywhere, and the list that names it.
 TEST(Extending, AWholePartIsShownAsItStandsInTheProduct) {
-  const std::string page = text_of("docs/extending.md"), part = text_of("ringbus/cycle/parts/stride_prefetcher/part.h"),
+  const std::string page = text_of("docs/guides/extending.md"),
+                    part = text_of("ringbus/cycle/parts/stride_prefetcher/part.h"),
                     list = text_of("core/config/parts.h");
   EXPECT_NE(page.find("```cpp\n" + part + "```"), std::string::npos) << "part.h";
   EXPECT_NE(page.find("using Parts = PartList<StridePrefetcherPart>;\n"), std::string::npos);

@@ -41,7 +41,8 @@ class Install(unittest.TestCase):
     def test_all_is_there(self):
         for pattern in ("share/man/man1/carousel.1.gz", "share/bash-completion/completions/carousel",
                         "share/zsh/*/_carousel", "share/carousel/configs/demo.yaml", "share/carousel/configs/schema.json",
-                        "share/doc/carousel/tutorial.md", "share/doc/carousel/README.md", "share/doc/carousel/copyright",
+                        "share/doc/carousel/guides/tutorial.md", "share/doc/carousel/README.md",
+                        "share/doc/carousel/copyright",
                         "share/doc/carousel-dev/examples/own_queue.cpp", "include/carousel/core/config/config.h",
                         "lib/**/libcarousel_core.a", "lib/**/CarouselConfig.cmake"):
             self.assertGreater(self.one(pattern).stat().st_size, 0, pattern)
@@ -152,7 +153,7 @@ class Install(unittest.TestCase):
             "stream", "--messages", "20000", "--seconds", "1", "--out", build / "stress")
 
     def test_the_page_of_plugins_works(self):
-        page = (self.prefix / "share/doc/carousel/plugins.md").read_text()
+        page = (self.prefix / "share/doc/carousel/guides/plugins.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
         self.assertEqual(len(blocks), 2)
         folder = Path(self.folder.name) / "page"

@@ -25,14 +25,15 @@ class Reliability(unittest.TestCase):
         folder = tempfile.TemporaryDirectory(prefix='carousel_reliability_')
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name)
-        for name in ('docs/data', 'script', 'tests'):
+        for name in ('docs/internals/data', 'script', 'tests'):
             (self.root / name).mkdir(parents=True)
         shutil.copy(SOURCE / 'script/test', self.root / 'script/test')
-        (self.root / 'docs/mutants.md').write_text(MUTANTS)
+        (self.root / 'docs/internals/mutants.md').write_text(MUTANTS)
         (self.root / 'tests/mutants.txt').write_text('a: b\nfile: x\n')
         self.git('init', '-q')
         self.commits(1)
-        (self.root / 'docs/soak.md').write_text(SOAK.format(commit=self.git('rev-parse', '--short', 'HEAD').strip()))
+        commit = self.git('rev-parse', '--short', 'HEAD').strip()
+        (self.root / 'docs/internals/soak.md').write_text(SOAK.format(commit=commit))
 
     def git(self, *words):
         user = ('-c', 'user.name=a', '-c', 'user.email=a@b.invalid', '-c', 'commit.gpgsign=false')
@@ -67,9 +68,9 @@ class Reliability(unittest.TestCase):
         self.assertIn('**1 has not been run yet.**', self.page())
 
     def test_a_soak_that_was_never_run_is_told(self):
-        (self.root / 'docs/soak.md').write_text(SOAK.format(commit='0123456'))
+        (self.root / 'docs/internals/soak.md').write_text(SOAK.format(commit='0123456'))
         self.assertIn('**It is older than 50 commits', self.page())
-        (self.root / 'docs/soak.md').write_text('# Soak\n')
+        (self.root / 'docs/internals/soak.md').write_text('# Soak\n')
         self.assertIn('**No whole soak has been run.**', self.page())
 
 

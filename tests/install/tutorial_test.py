@@ -1,4 +1,4 @@
-"""Executes every block of docs/tutorial.md in turn, in a folder of its own, on a smaller picture.
+"""Executes every block of docs/guides/tutorial.md in turn, in a folder of its own, on a smaller picture.
 
 CAROUSEL names the program. With --whole, in a clone of the sources: builds as the page says, on the page's own picture, and
 says how long each block took.
@@ -17,7 +17,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 
 def blocks():
-    return re.findall(r"```(sh|sh build|python)\n(.*?)```", (SOURCE / "docs" / "tutorial.md").read_text(), re.S)
+    return re.findall(r"```(sh|sh build|python)\n(.*?)```", (SOURCE / "docs/guides/tutorial.md").read_text(), re.S)
 
 
 def execute(language, text, folder, environment):
@@ -58,7 +58,7 @@ class Tutorial(unittest.TestCase):
         self.assertRegex(printed, "hits +the same")
 
     def test_its_links_lead_somewhere(self):
-        page = (SOURCE / "docs" / "tutorial.md").read_text()
+        page = (SOURCE / "docs" / "guides" / "tutorial.md").read_text()
         for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page):
             self.assertTrue((SOURCE / "docs" / target).exists(), target)
 

@@ -151,7 +151,7 @@ class Usage(unittest.TestCase):
 
     def test_help_teaches(self):
         top = written("--help")
-        for text in ("First steps:", "carousel run configs/demo.yaml", "docs/tutorial.md", "man"):
+        for text in ("First steps:", "carousel run configs/demo.yaml", "docs/guides/tutorial.md", "man"):
             self.assertIn(text, top)
         for name, text in self.help.items():
             self.assertRegex(text, rf"Examples:\n  .*carousel {name}", name)

@@ -1,4 +1,5 @@
-"""Executes every command of docs/draw-a-machine.md in turn, in a folder of its own. CAROUSEL names the program."""
+"""Executes every command of docs/guides/draw-a-machine.md in turn, in a folder of its own. CAROUSEL names the
+program."""
 
 import os
 import re
@@ -12,7 +13,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
-        page = (SOURCE / "docs" / "draw-a-machine.md").read_text()
+        page = (SOURCE / "docs" / "guides" / "draw-a-machine.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
         self.assertEqual(len(blocks), 10)
         printed = []

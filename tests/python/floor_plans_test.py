@@ -1,4 +1,4 @@
-"""Runs the commands of docs/floor-plans.md, with small pictures, on configs/floorplans. CAROUSEL names the program."""
+"""Runs the commands of docs/studies/floor-plans.md, with small pictures, on configs/floorplans. CAROUSEL names the program."""
 
 import os
 import re
@@ -22,7 +22,7 @@ class FloorPlans(unittest.TestCase):
             self.assertRegex(comment, r"After the (block diagram|basic design) of .*figure \d")
 
     def test_commands_of_the_page(self):
-        page = (SOURCE / "docs/floor-plans.md").read_text()
+        page = (SOURCE / "docs/studies/floor-plans.md").read_text()
         check, run = re.findall(r"```sh\n(.*?)```", page, re.S)
         small = "--quiet --set image.width=32 --set image.height=20"
         self.assertEqual(run.count("--quiet"), 1)

@@ -1,4 +1,4 @@
-"""Every key, value, test and file that docs/patents.md names exists, and its sum is that of its rows."""
+"""Every key, value, test and file that docs/studies/patents.md names exists, and its sum is that of its rows."""
 
 import json
 import pathlib
@@ -14,7 +14,7 @@ ANSWERS = re.compile(r'^((yes|narrowly)(, cycle|, native)?|no)$')
 
 def rows():
     """Cells of each row of the page's tables: number, feature, works, shown by, missing."""
-    for line in (ROOT / 'docs/patents.md').read_text().splitlines():
+    for line in (ROOT / 'docs/studies/patents.md').read_text().splitlines():
         cells = [cell.strip() for cell in line.split('|')[1:-1]]
         if cells and cells[0].isdigit():
             yield cells
@@ -61,11 +61,11 @@ class PatentsPage(unittest.TestCase):
             self.assertTrue(missing or works.startswith('yes'), f'{number} does not say what is narrowed or missing')
             self.assertEqual(shown == '', works == 'no', f'{number}: a feature is shown by something, or is not built')
             count[works.split(',')[0]] += 1
-        page = (ROOT / 'docs/patents.md').read_text()
+        page = (ROOT / 'docs/studies/patents.md').read_text()
         self.assertIn(f'Of {len(table)} features {count["yes"]} work, {count["narrowly"]} work narrowly and {count["no"]} do not.', page)
 
     def test_keys_and_values_exist(self):
-        report, known = (ROOT / 'docs/report.md').read_text(), 0
+        report, known = (ROOT / 'docs/reference/report.md').read_text(), 0
         for number, _, _, shown, missing in rows():
             last = None
             for named in NAMED.findall(shown + missing):
@@ -84,14 +84,14 @@ class PatentsPage(unittest.TestCase):
 
     def test_tests_and_files_exist(self):
         existing, known = tests(), 0
-        page = (ROOT / 'docs/patents.md').read_text()
+        page = (ROOT / 'docs/studies/patents.md').read_text()
         for named in NAMED.findall(page):
             if TEST.match(named):
                 self.assertIn(named, existing)
                 known += 1
         self.assertGreater(known, 150)
         for name in re.findall(r'\]\(([^)#]+)', page) + re.findall(r'\b(configs/\w+\.yaml)', page):
-            self.assertTrue((ROOT / 'docs' / name).exists() or (ROOT / name).exists(), f'there is no {name}')
+            self.assertTrue((ROOT / 'docs/studies' / name).exists() or (ROOT / name).exists(), f'there is no {name}')
 
 
 if __name__ == '__main__':

@@ -1,4 +1,4 @@
-"""Executes every command of docs/rings.md in turn, in a folder of its own. CAROUSEL names the program."""
+"""Executes every command of docs/studies/rings.md in turn, in a folder of its own. CAROUSEL names the program."""
 
 import json
 import os
@@ -13,7 +13,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 class RingsPage(unittest.TestCase):
     def test_every_block_works(self):
-        page = (SOURCE / "docs" / "rings.md").read_text()
+        page = (SOURCE / "docs" / "studies" / "rings.md").read_text()
         blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
         self.assertEqual(len(blocks), 5)
         printed = []

@@ -1,4 +1,5 @@
-"""Executes every command and every Python block of docs/sweeps.md, in a folder of its own. CAROUSEL names the program."""
+"""Executes every command and every Python block of docs/guides/sweeps.md, in a folder of its own. CAROUSEL names
+the program."""
 
 import os
 import re
@@ -13,7 +14,7 @@ SOURCE = Path(__file__).resolve().parents[2]
 
 class SweepsPage(unittest.TestCase):
     def test_every_block_works(self):
-        page = (SOURCE / "docs" / "sweeps.md").read_text()
+        page = (SOURCE / "docs" / "guides" / "sweeps.md").read_text()
         blocks = re.findall(r"```(sh|python)\n(.*?)```", page, re.S)
         self.assertGreaterEqual(len(blocks), 6)
         with tempfile.TemporaryDirectory() as folder:

@@ -2,7 +2,7 @@
 """Compares networks that are drawn, run alone by `carousel run` (workload: {traffic: ...}), with rows of BookSim2.
 
     graph_rows.py CAROUSEL [--rows FILE.csv] [--graphs FOLDER_OR_FILE] [--only WORD]... [--part I/N] [--every]
-    graph_rows.py --printed FILE... --write docs/validation.md
+    graph_rows.py --printed FILE... --write docs/internals/validation.md
 
 A graph is FOLDER/NAME.txt with lines `node I`, `router I`, `link A B LATENCY`, `arc A B LATENCY`; or all of them stand
 in one file, each behind a line `graph NAME ...` (tests/data/booksim2_graphs.txt). A row is graph, flits, offered, vcs,

@@ -3,7 +3,7 @@
 
     latency_curve.py CAROUSEL [PACKETS]
 
-Prints a table for docs/validation.md. Exit status 1 if a point of the two differs by more than the confidence
+Prints a table for docs/internals/validation.md. Exit status 1 if a point of the two differs by more than the confidence
 intervals of both and 0.2 % of the latency."""
 import json
 import pathlib

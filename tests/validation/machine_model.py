@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""A second opinion on the cycle engine: a model of the whole machine, written from docs/cycle-engine-exact.md alone,
-against the engine. For each of a number of seeded random machines it predicts the cycle at which every ray has been
+"""A second opinion on the cycle engine: a model of the whole machine, written from
+docs/internals/cycle-engine-exact.md alone, against the engine. For each of a number of seeded random machines it predicts the cycle at which every ray has been
 shaded, and every step of every part; the engine must agree to the cycle.
 
     machine_model.py MACHINE_FACTS [--machines N] [--seed SEED] [--only INDEX] [--keep FOLDER]

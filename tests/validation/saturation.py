@@ -3,7 +3,8 @@
 
     saturation.py CAROUSEL [PACKETS]
 
-Prints a table for docs/validation.md. Exit status 1 if the packets delivered needed more than the links can move."""
+Prints a table for docs/internals/validation.md. Exit status 1 if the packets delivered needed more than the links
+can move."""
 import json
 import pathlib
 import subprocess

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""The ring of docs/validation.md again, written from its description for SimPy 3 (Debian: python3-simpy3), to be
-compared with `workload: {traffic: ...}`. Nothing is shared with the C++ program: other language, other event
-engine, other random numbers.
+"""The ring of docs/internals/validation.md again, written from its description for SimPy 3 (Debian:
+python3-simpy3), to be compared with `workload: {traffic: ...}`. Nothing is shared
+with the C++ program: other language, other event engine, other random numbers.
 
 One-way ring, 1-flit packets to uniformly drawn resources (the source among them), queues of `depth` places, bubble
 rule, hops of 4 cycles, 3 to get in and 3 to get out. Processes wait for each other within a cycle in three phases:

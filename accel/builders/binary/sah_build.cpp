@@ -83,7 +83,7 @@ struct Binning {
     }
     scale[3] = 0;
     // bins() must subtract nothing from the bits of an index: as floats, two indices of 8 million and more may differ
-    // by a denormal number, for which some processors take many times as long (docs/performance.md).
+    // by a denormal number, for which some processors take many times as long (docs/internals/performance.md).
     origin[3] = 0;
   }
   /// On one axis, as bins() says: faster where no other is wanted.

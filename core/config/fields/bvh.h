@@ -118,7 +118,8 @@ void describe(V& v, BvhConfig& c) {
       "Meshes are divided once, from the top; or subtrees are then moved to where the areas of all boxes add up to "
       "less, which takes several times as long to build, and less to traverse where triangles are long.");
   v.field("file", c.file, "",
-          "A file of trees over the meshes, which takes the place of building them (docs/builders.md). Its path is "
+          "A file of trees over the meshes, which takes the place of building them (docs/how-it-works/builders.md). "
+          "Its path is "
           "relative as that of scene.file is. The top level is built as ever.");
 }
 

@@ -8,7 +8,7 @@
 namespace carousel {
 
 /// A format that a picture is written in, by the ending of its file. All but the first two are written by the module
-/// pictures (docs/modules.md).
+/// pictures (docs/how-it-works/modules.md).
 enum class PictureFile : std::uint8_t {
   kPng,
   kExr,
@@ -75,7 +75,7 @@ void describe(V& v, ImageConfig& c) {
           "curve. Pictures of floats (exr, tiff, hdr, pfm, fits) and the digests keep the light as it was computed.");
   v.choices("files", c.files,
             "The pictures that a run writes: image.png, image.exr and so on. All but png and exr need the module "
-            "pictures (docs/modules.md). The page of a run shows image.png.");
+            "pictures (docs/how-it-works/modules.md). The page of a run shows image.png.");
 }
 
 }  // namespace config

@@ -24,7 +24,8 @@ namespace carousel::ringbus::cycle {
 ///     inject_cycles + h * latency_cycles + L - 1 + eject_cycles.
 /// Packets on their way go before packets of the source.
 ///
-/// Packets that go only part of the way round a ring cannot stop it (docs/design.md, Deadlock and the end):
+/// Packets that go only part of the way round a ring cannot stop it (docs/how-it-works/design.md, Deadlock and the
+/// end):
 /// - `bubble`: a packet is injected only if it leaves a free place in the next queue, so injecting never fills a round
 ///   of queues, and moving on does not change how many are full. Some packet always has a free place ahead
 ///   (V. Puente et al., The adaptive bubble router, J. Parallel and Distributed Computing 61 (2001)).

@@ -42,7 +42,7 @@ std::uint32_t nearest(const CollectionFacts& c, const PolicyScale& scale) {
 }
 
 // A new policy has two places: its function and row here, and its value and name in core/config/fields/collections.h
-// (docs/extending.md). Schema, documentation, error messages and tests follow.
+// (docs/guides/extending.md). Schema, documentation, error messages and tests follow.
 constexpr std::array kPolicies{
     IssuePolicy{.policy = Policy::kFullest, .bucket = fullest},
     IssuePolicy{.policy = Policy::kOldest, .bucket = one_bucket},

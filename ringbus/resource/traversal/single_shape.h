@@ -9,9 +9,10 @@ namespace carousel::ringbus {
 /// `packets.shapes: single`: as SpreadTraversal, but a packet tests one shape of a strip.
 ///
 /// A ray waits for as many tests at a node as its strip has shapes. Its owner sees one shape a visit, so it must count
-/// shapes: counting nodes would complete nearly every ray early (docs/design.md, The way of a ray). A packet's
-/// retirement takes at most one block. With `made_per: child` each shape has a collection of its own, and rays that hit
-/// its parent join it (US 9633468: packets "per child node", as against collections of rays that have hit a node).
+/// shapes: counting nodes would complete nearly every ray early (docs/how-it-works/design.md, The way of a ray). A
+/// packet's retirement takes at most one block. With `made_per: child` each shape has a collection of its own, and rays
+/// that hit its parent join it (US 9633468: packets "per child node", as against collections of rays that have hit a
+/// node).
 class SingleShapeTraversal final : public SpreadTraversal {
  public:
   SingleShapeTraversal(const VisitContext& context, const Treelets& treelets, MadePer made_per)

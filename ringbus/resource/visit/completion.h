@@ -13,7 +13,8 @@
 namespace carousel::ringbus {
 
 /// Counts the tests that each ray of a store still waits for, and takes a ray out of its slot when none is left
-/// (docs/design.md, The way of a ray). The results and the free slots wait here until the engine takes them away.
+/// (docs/how-it-works/design.md, The way of a ray). The results and the free slots wait here until the engine takes
+/// them away.
 class Completion {
  public:
   /// Keeps references. `transforms` may be null.

@@ -13,7 +13,7 @@
 namespace carousel::accel {
 
 /// The traditional form with fused multiply-adds that start from the translation: the fairest it can be made. The
-/// kernels never fuse (docs/design.md, One arithmetic).
+/// kernels never fuse (docs/how-it-works/design.md, One arithmetic).
 inline Vec3 inverse_matrix_fma(const Mat3& inverse, const Vec3& folded, const Vec3& p) {
   Vec3 out;
   for (int row = 0; row < 3; ++row)

@@ -1,5 +1,5 @@
-// Kinds of fault that other simulators had, as runs whose answers follow from the configuration. docs/validation.md
-// lists them.
+// Kinds of fault that other simulators had, as runs whose answers follow from the configuration.
+// docs/internals/validation.md lists them.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sched.h>

@@ -1,4 +1,5 @@
-// The tables of real runs, item by item: each is explained in docs/report.md, and none is of the other engine.
+// The tables of real runs, item by item: each is explained in docs/reference/report.md, and none is of the other
+// engine.
 #include <regex>
 #include <set>
 #include <sstream>

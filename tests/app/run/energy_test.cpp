@@ -241,7 +241,7 @@ TEST_F(EnergyRun, OtherBoundsCostWhatTheirTestsTake) {
 }
 
 TEST(MachinesPage, HasEveryNumberWithItsSource) {
-  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/machines.md");
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/how-it-works/machines.md");
   const std::string page(std::istreambuf_iterator<char>(file), {});
   static constexpr const char* kBases[] = {"published", "derived", "assumed"};
   const auto shown = [](const CostValue& value) {

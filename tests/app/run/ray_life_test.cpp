@@ -166,7 +166,7 @@ TEST(RayLife, ARayBeginsWhenItsParentEnds) {
 }
 
 // One ray alone that misses the scene: made, loaded, tested once with the children of the root, and shaded. Each number
-// follows from docs/cycle-engine-exact.md.
+// follows from docs/internals/cycle-engine-exact.md.
 TEST(RayLife, OfALoneRayIsWhatHandsCompute) {
   const std::string config =
       "scene: {builtin: cornell}\nimage: {width: 1, height: 1, samples: 1, max_depth: 1}\n"

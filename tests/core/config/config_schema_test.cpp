@@ -102,9 +102,9 @@ TEST(ConfigSchema, StandsBesideTheExamples) {
 }
 
 TEST(ConfigPage, IsWrittenByTheProgram) {
-  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/config.md");
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/reference/config.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_TRUE(page == config_markdown()) << "carousel schema config --markdown >docs/config.md";
+  EXPECT_TRUE(page == config_markdown()) << "carousel schema config --markdown >docs/reference/config.md";
 }
 
 }  // namespace

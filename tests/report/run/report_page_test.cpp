@@ -11,9 +11,9 @@ namespace carousel::report {
 namespace {
 
 TEST(ReportPage, IsWrittenByTheProgram) {
-  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/report.md");
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/reference/report.md");
   const std::string page{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_TRUE(page == report_markdown()) << "carousel schema report --markdown >docs/report.md";
+  EXPECT_TRUE(page == report_markdown()) << "carousel schema report --markdown >docs/reference/report.md";
 }
 
 // A key that the schema does not have would have no meaning.

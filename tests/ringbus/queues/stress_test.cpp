@@ -1,7 +1,7 @@
 // The stress run of queues: sound queues pass every pattern, and the errors of broken ones are found and named.
 #include <gtest/gtest.h>
 
-#include "own_queue.h"  // the example of docs/queues.md
+#include "own_queue.h"  // the example of docs/guides/queues.md
 #include "ringbus/stress/delivery_checker.h"
 #include "ringbus/stress/stress_run.h"
 #include "tests/ringbus/queues/broken_queues.h"

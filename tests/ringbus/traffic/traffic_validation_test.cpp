@@ -1,4 +1,4 @@
-// The network alone against closed forms and against another simulator's numbers (docs/validation.md).
+// The network alone against closed forms and against another simulator's numbers (docs/internals/validation.md).
 #include <array>
 #include <cmath>
 #include <fstream>

@@ -1,4 +1,5 @@
-// Kinds of fault that other importers had, each with the answer by the specification. docs/validation.md lists them.
+// Kinds of fault that other importers had, each with the answer by the specification. docs/internals/validation.md
+// lists them.
 #include <cmath>
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-"""Time, and channels between the parts of a machine (docs/cycle-engine-exact.md, "Time")."""
+"""Time, and channels between the parts of a machine (docs/internals/cycle-engine-exact.md, "Time")."""
 import heapq
 from collections import deque
 
