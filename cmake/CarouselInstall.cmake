@@ -52,6 +52,8 @@ install(DIRECTORY python/carousel DESTINATION "\${carousel_python}" ${program} P
 install(FILES ${written}/changelog.gz README.md DESTINATION ${docs} ${program})
 install(FILES cmake/copyright ${written}/NOTICES.gz ${written}/carousel.spdx.json DESTINATION ${docs} ${program})
 install(DIRECTORY docs/ DESTINATION ${docs} ${program})
+# The same pages as a site, where script/docs has built it: looked for when the program is installed.
+install(DIRECTORY build/site/ DESTINATION ${docs}/html ${program} OPTIONAL)
 install(DIRECTORY python/examples/ DESTINATION ${docs}/examples/python ${program} PATTERN .ipynb_checkpoints EXCLUDE)
 
 # -- Modules: each where its library was found
