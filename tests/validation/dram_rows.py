@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Compares DRAM with banks, run alone by `carousel run` (workload: {memory_trace: FILE}), with rows of Ramulator 2.1.
 
-    dram_rows.py CAROUSEL [--rows FILE.csv] [--only WORD] [--write docs/internals/validation.md]
+    dram_rows.py CAROUSEL [--rows FILE.csv] [--only WORD] [--write docs/internals/data/dram-rows.md]
 
 A row is standard, pattern, queue, refresh, gap_cycles, reads, cycles, row_hits, row_misses, row_conflicts,
 avg_read_latency_cycles. Ends with status 1 if a row with 32 places or more is off by more than 1 % in cycles or 2.5 % in

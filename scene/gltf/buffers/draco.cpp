@@ -22,7 +22,7 @@ namespace carousel::scene {
 namespace {
 
 constexpr std::int64_t kIndices = -1;
-/// The memory that the decoder takes for connectivity, measured at its peak (docs/guides/gltf.md), and for each
+/// The memory that the decoder takes for connectivity, measured at its peak (docs/reference/gltf.md), and for each
 /// component of an attribute: the decoded integer, the value and its copy.
 constexpr std::uint64_t kBytesPerFace = 100, kBytesPerVertex = 80, kBytesPerComponent = 12;
 

@@ -46,7 +46,7 @@ std::vector<ResultRow> rows_of(const std::string& name) {
 }
 
 /// The rows of a file that Ramulator 2.1 gave, of which the saturated ones with 32 places are tried here; the table in
-/// docs/internals/validation.md has all.
+/// docs/internals/data/dram-rows.md has all.
 TEST(Dram, AgreesWithRamulator) {
   std::vector<double> cycle_errors, latency_errors;
   for (const ResultRow& row : rows_of("dram-ramulator21.csv")) {
