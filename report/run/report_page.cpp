@@ -20,6 +20,19 @@ constexpr std::string_view kHead =
     "counts of what threads\nhappened to do may differ between runs. A key that says (native) or (cycle) stands only "
     "in "
     "runs of that engine.\n";
+constexpr std::string_view kFirst =
+    "\n## The ten numbers to look at first\n\n| key | question |\n|---|---|\n"
+    "| `rays.lost` | Did every ray come back? 0, or the run has failed |\n"
+    "| `digest.hits` | Is it the answer of another machine? Equal digests are equal hits, to the bit |\n"
+    "| `engine.cycles` | How long did the frame take? (cycle) |\n"
+    "| `throughput.whole.rays_per_kilocycle` | How fast is the machine? `throughput.steady` is the rate without fill "
+    "and drain (cycle) |\n"
+    "| `bottleneck` | Which class of parts limits it, and what does doubling that gain? (cycle) |\n"
+    "| `bound` | What would the busiest class allow, and how much of that is reached? (cycle) |\n"
+    "| `tests.box.per_ray`, `tests.triangle.per_ray` | How much work is a ray? |\n"
+    "| `packets.rays_mean` | How full are packets? Small packets waste links and dispatch |\n"
+    "| `memory.caches[].hit_fraction`, `memory.dram_utilisation` | Does memory keep up? (cycle) |\n"
+    "| `energy.nj_per_ray`, `area.mm2` | What does it cost? With `energy.profile` alone (cycle) |\n";
 constexpr std::string_view kTerminalHead =
     "\n## The table of {}\n\n`N` stands for a number, `*` for words.\n\n"
     "| line | text | key in report.json | meaning |\n|---|---|---|---|\n";
@@ -76,7 +89,7 @@ void rows(std::string& out, const std::string& path, const Json& schema) {
 
 std::string report_markdown() {
   const Json schema = report_schema();
-  std::string out(kHead);
+  std::string out = fmt::format("{}{}", kHead, kFirst);
   terminal_table(out, schema, false, "a run of rays");
   terminal_table(out, schema, true, "synthetic traffic");
   for (const auto& [key, section] : schema["properties"].items()) {

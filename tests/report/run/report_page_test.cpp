@@ -16,6 +16,23 @@ TEST(ReportPage, IsWrittenByTheProgram) {
   EXPECT_TRUE(page == report_markdown()) << "carousel schema report --markdown >docs/reference/report.md";
 }
 
+// The page begins with the numbers to look at first, each of which it explains further down.
+TEST(ReportPage, ExplainsTheTenNumbersThatItBeginsWith) {
+  const std::string page = report_markdown();
+  const std::size_t begin = page.find("## The ten numbers"), end = page.find("\n## ", begin + 1);
+  ASSERT_LT(begin, end);
+  std::size_t rows = 0;
+  for (std::size_t row = page.find("\n| `", begin); row < end; row = page.find("\n| `", row + 1)) {
+    ++rows;
+    const std::size_t stop = page.find(" | ", row + 2);
+    for (std::size_t open = page.find('`', row); open < stop; open = page.find('`', page.find('`', open + 1) + 1)) {
+      const std::string key = page.substr(open, page.find('`', open + 1) - open + 1);
+      EXPECT_NE(page.find("\n| " + key + " | ", end), std::string::npos) << key;
+    }
+  }
+  EXPECT_EQ(rows, 10U);
+}
+
 // A key that the schema does not have would have no meaning.
 TEST(ReportPage, EveryItemOfTheTerminalHasAMeaning) {
   EXPECT_THAT(report_markdown(), testing::Not(testing::ContainsRegex("\\|  \\|\n")));
