@@ -64,6 +64,16 @@ class PatentsPage(unittest.TestCase):
         page = (ROOT / 'docs/studies/patents.md').read_text()
         self.assertIn(f'Of {len(table)} features {count["yes"]} work, {count["narrowly"]} work narrowly and {count["no"]} do not.', page)
 
+    def test_rows_that_runs_show_are_rows_that_work(self):
+        works = {int(row[0]): row[2] for row in rows()}
+        lines = [line.split('|') for line in (ROOT / 'tests/patents.txt').read_text().splitlines() if line[:1].isdigit()]
+        self.assertGreater(len(lines), 80)
+        for cells in lines:
+            self.assertIn(len(cells), (6, 7), cells)
+            self.assertTrue(works[int(cells[0])].startswith(('yes', 'narrowly')), cells)
+            for setting in ' '.join(cells[1:4]).split():
+                self.assertIsNotNone(at(self.schema, setting.partition('=')[0]), setting)
+
     def test_keys_and_values_exist(self):
         report, known = (ROOT / 'docs/reference/report.md').read_text(), 0
         for number, _, _, shown, missing in rows():
