@@ -66,4 +66,6 @@ def on_post_build(config):
     index = json.loads((site / "search/search_index.json").read_text())
     text = json.dumps(index, separators=(",", ":")).replace("</", "<\\/")
     (site / "search/search_index.js").write_text(f"var __search = {{index: Promise.resolve({text})}};\n")
+    for name in ("sitemap.xml", "sitemap.xml.gz"):   # for search engines, and with the time of the build in it
+        (site / name).unlink(missing_ok=True)
     (site / "search/offline.js").write_text((HERE / "offline.js").read_text())
