@@ -240,8 +240,8 @@ TEST_F(EnergyRun, OtherBoundsCostWhatTheirTestsTake) {
   EXPECT_NEAR(r["energy"]["parts"]["plane_tests"]["pj_each"].get<double>(), 98, 1e-3);
 }
 
-TEST(MachinesPage, HasEveryNumberWithItsSource) {
-  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/how-it-works/machines.md");
+TEST(CostsPage, HasEveryNumberWithItsSource) {
+  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/reference/costs.md");
   const std::string page(std::istreambuf_iterator<char>(file), {});
   static constexpr const char* kBases[] = {"published", "derived", "assumed"};
   const auto shown = [](const CostValue& value) {
