@@ -1,8 +1,10 @@
 #include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -12,6 +14,8 @@
 namespace carousel::config {
 
 namespace {
+
+using Nodes = std::vector<std::uint32_t>;
 
 /// The fault of the way from one resource to another, if it is never reached.
 std::optional<GraphIssue> fault_of(const Graph& graph, std::size_t lane, const Routes& routes, std::uint32_t from,
