@@ -34,6 +34,8 @@ struct SimtConfig {
   enum class Compaction { kNone, kRepack } compaction = Compaction::kNone;
   std::int64_t repack_rays_per_cycle = 8;
   enum class IdleLanes { kWait, kHelp } idle_lanes = IdleLanes::kWait;
+
+  friend bool operator==(const SimtConfig&, const SimtConfig&) = default;
 };
 
 template <>
