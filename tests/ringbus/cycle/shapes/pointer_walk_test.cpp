@@ -37,7 +37,7 @@ struct VisitBench {
       ways.ends.push_back(static_cast<std::uint32_t>(ways.steps.size()));
     }
     visits->prepare(0, ways);
-    visits->begin(0, static_cast<std::uint32_t>(rays.size()), at);
+    visits->begin(0, static_cast<std::uint32_t>(rays.size()), at, false);
     Cycle now = at;
     while (!visits->ended(0)) {
       now = std::min({visits->next(), buffer->next(), requests.next()});
