@@ -142,7 +142,7 @@ TEST_F(ImportRun, DigestsCountMaterialFilesAndPictures) {
   const auto digest = [&] {
     SceneConfig config;
     config.file = "roof.obj";
-    return app::ContentDigests(program_.folder()).of({}, config, {});
+    return app::ContentDigests(program_.folder()).of({}, config, {}, {});
   };
   const std::string first = digest();
   EXPECT_EQ(digest(), first);

@@ -43,7 +43,7 @@ inline Report sample_report() {
   r.resources = {a, b};
   r.links = {{0, 1, 16, 600, 1.5, 9, 7}, {1, 0, 16, 600, 2.5, 11, 0}};
   r.traffic = {1000,       1000,  4, 100, 5000, 900, 0.1, 0.09, 3.5, 16, {17.5, 16, 20, 31, 47},
-               {0.3, 0.6}, 12000, 0, 0,   0,    {}};
+               {0.3, 0.6}, 12000, 0, 0,   0,    {},  {}};
   r.shading.workers = 2;
   r.shading.shaded = 990;
   r.shading.effects = {{"shadow_rays", true, true, 1, "one light", {}}};
