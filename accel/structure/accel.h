@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -69,7 +70,7 @@ struct Accel {
   /// Places on the longest way down where a ray may be in a collection: strips, or pieces of the tree.
   int levels() const { return pieces ? pieces->depth : max_depth; }
   /// The most other places that a ray may come to from one of them.
-  int most_ways() const { return pieces ? static_cast<int>(pieces->most_exits) : width; }
+  int most_ways() const { return pieces ? std::max(1, static_cast<int>(pieces->most_exits)) : width; }
   /// Bytes of the structure at this rank.
   std::size_t size_bytes() const {
     return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + elements.size_bytes() + plane_bytes +

@@ -106,7 +106,7 @@ void describe(V& v, const Report& r) {
   v.section("clocks", r.clocks, "each clock, where parts of the machine go by several");
   v.section("rays", r.rays, "rays; emitted = completed + lost");
   v.section("ray_time", r.ray_time,
-            "where the cycles of all rays go (cycle); absent of an incomplete run, with bundles, and with "
+            "where the cycles of all rays go (cycle); absent of an incomplete run, with bundles, warps, and with "
             "faults.resource.kind: stop");
   v.section("heat", r.heat, "cost of the picture's pixels, of a run with --heat (cycle)");
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");

@@ -46,7 +46,7 @@ struct BounceLanes {
 
 template <class V>
 void describe(V& v, const BounceLanes& r) {
-  v.field("bounce", r.bounce, "",
+  v.field("bounce", r.bounce, "surfaces",
           "bounce of the rays; 0 is that of camera rays and of the shadow rays of what they hit");
   describe(v, r.use);
   v.field("fill", ratio(r.use.ray_cycles, r.use.lane_cycles), "fraction", "part of the lanes whose ray had not ended");

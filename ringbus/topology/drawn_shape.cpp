@@ -84,6 +84,11 @@ DrawnShape draw_shape(const TopologyConfig& config) {
   out.config.shape = TopologyShape::kGraph;
   out.config.nodes = {drawn_group("r", config.resources)};
   out.config.links.clear();
+  // Keys of graphs that a shape does not feel.
+  out.config.routes = Routing::kShortest;
+  out.config.tour = Tour::kNames;
+  out.config.root.clear();
+  out.config.ways.clear();
   switch (config.shape) {
     case TopologyShape::kRing:
       if (links) out.config.links = {ring_of("r[*]")};

@@ -60,7 +60,7 @@ class Tutorial(unittest.TestCase):
     def test_its_links_lead_somewhere(self):
         page = (SOURCE / "docs" / "guides" / "tutorial.md").read_text()
         for target in re.findall(r"\]\(([^)#]+)[^)]*\)", page):
-            self.assertTrue((SOURCE / "docs" / target).exists(), target)
+            self.assertTrue((SOURCE / "docs" / "guides" / target).exists(), target)
 
 
 def whole():

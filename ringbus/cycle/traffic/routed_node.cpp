@@ -205,6 +205,7 @@ void RoutedNode::pass_marks(Cycle now) {
 
 Cycle RoutedNode::busy_at(const Exit& exit, Cycle at) const {
   Cycle sum = 0;
+  if (is_sink(exit)) return sum;  // its channels are no links
   for (std::size_t channel = 0; channel < exit.channels; ++channel) sum += out_[exit.first + channel].moved(at);
   return sum;
 }

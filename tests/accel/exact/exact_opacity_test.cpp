@@ -96,7 +96,7 @@ TEST(ExactReference, AsksWhatMayPassAndKnowsSpheresAndCulledSides) {
   for (const BuiltinScene builtin : {BuiltinScene::kSpheres, BuiltinScene::kInstances}) {
     const scene::Scene scene = passing_scene(builtin, 20, run_seed() + 760);
     const ExactReference reference(scene, &stop);
-    const RayBatch rays = wishing_rays(scene, static_cast<std::size_t>(scaled(24)), run_seed() + 761);
+    const RayBatch rays = wishing_rays(scene, static_cast<std::size_t>(scaled(24, 24)), run_seed() + 761);
     for (const RayRequest& r : rays) {
       // At edges and corners a hundred digits do not decide.
       RayRequest off = r;

@@ -62,12 +62,12 @@ TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
   for (const BadUsage& bad : std::vector<BadUsage>{
            {{},
-            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, follow, report, serve, "
+            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, versus, follow, report, serve, "
             "schema, "
             "completion, man"},
            {{"rnu", "a.yaml"},
             "error: unknown command rnu; did you mean run?; known are run, sweep, check, stress, accuracy, "
-            "inspect, compare, follow, report, serve, schema, completion, man"},
+            "inspect, compare, versus, follow, report, serve, schema, completion, man"},
            {{"run", "a.yaml", "--jsn"}, "error: unknown option --jsn; did you mean --json?"},
            {{"--versoin"}, "error: unknown option --versoin; did you mean --version?"},
            {{"run"}, "error: config is required"},

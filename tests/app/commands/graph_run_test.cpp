@@ -236,7 +236,7 @@ TEST(GraphRun, APacketKeepsItsLane) {
                                   "topology:\n  shape: graph\n  nodes: [{name: r, count: 4}]\n  links:\n"
                                   "    - {ring: 'r[*]', lane: 0}\n    - {ring: 'r[3..0]', lane: 1}\n");
   const auto links = [&](const std::string& set) {
-    const Outcome run = program.run({"run", "lanes.yaml", "--json", "--set", set});
+    const Outcome run = program.run({"run", "lanes.yaml", "--json", "--force", "--set", set});
     EXPECT_EQ(run.status, 0) << run.err;
     return Json::parse(run.out)["links"];
   };
@@ -267,7 +267,8 @@ TEST(GraphRun, CheckSaysWhatLanesAndABusCarry) {
   EXPECT_THAT(lanes, HasSubstr("# deadlock: impossible. credits: 4 resources with at most 16 packets each put 64 "));
   // Packets of both lanes may fill the link between two routers.
   const std::string meet = check(
-      "[{name: r, count: 4}, {name: x, kind: router, count: 2}]\n  links: [{ring: 'r[*], x[0]', lane: 0}, {ring: "
+      "[{name: r, count: 4}, {name: x, kind: router, count: 2, buffers: 1}]\n  links: [{ring: 'r[*], x[0]', lane: 0}, "
+      "{ring: "
       "'r[*], x[1]', lane: 1}, {line: 'x[*]', both: true}]\n");
   EXPECT_THAT(meet, HasSubstr("4 resources put up to 32 each on the way"));
   const std::string bus = check(
@@ -291,7 +292,7 @@ TEST(GraphRun, SeveralUnitsOfACentralMachineHaveCellsAndMemoryOfTheirOwn) {
                     "    - {from: 'l2[*]', to: dram, both: true, carries: [shapes]}\n"
                     "testers: {simd: {lanes: 8}}\n");
   const auto run = [&](const std::string& file, const std::string& set) {
-    const Outcome outcome = program.run({"run", file, "--json", "--set", "verify=reference", "--set", set});
+    const Outcome outcome = program.run({"run", file, "--json", "--force", "--set", "verify=reference", "--set", set});
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return Json::parse(outcome.out);
   };

@@ -59,7 +59,7 @@ TEST_F(RunPage, OfAllResultsOfAFolderAreMadeAgain) {
   std::filesystem::create_directory(program_.folder() / "empty");
   const Outcome none = program_.run({"report", "empty"});
   EXPECT_EQ(none.status, 2);
-  EXPECT_THAT(none.err, HasSubstr("sweep.json, report.json, accuracy.json or stress.json"));
+  EXPECT_THAT(none.err, HasSubstr("sweep.json, report.json, accuracy.json, stress.json or versus.json"));
 }
 
 TEST_F(RunPage, IsLeftOutOnRequest) {

@@ -96,7 +96,9 @@ TEST(KeyRows, AreThereForEveryKeyAndNoOther) {
 }
 
 TEST(KeyRows, AreThereForEveryNameOfAnEnumeration) {
+  const std::vector<std::string> without = keys_without_a_row();
   for (const std::string& key : key_leaves()) {
+    if (std::find(without.begin(), without.end(), key) != without.end()) continue;
     const std::vector<std::string> names = config::enum_values(key);
     std::set<std::string> tried;
     for (const KeyRow& row : key_rows()) {

@@ -128,7 +128,7 @@ TEST_F(RayTime, GrowsWhereThePartIsSlower) {
   for (const auto& [set, stage] :
        {std::pair{"shading.cycles_per_shade=400", "shading"}, std::pair{"topology.link.latency_cycles=40", "link"},
         std::pair{"memory.l2_latency_cycles=400", "shapes"}, std::pair{"testers.box.latency_cycles=300", "test"},
-        std::pair{"packets.ids_per_cycle=1", "dispatch"}, std::pair{"rays.slots_per_resource=8", "slot"}})
+        std::pair{"packets.ids_per_cycle=1", "dispatch"}, std::pair{"shading.workers=1", "shade_queue"}})
     EXPECT_GT(report(kMachine, {set})["ray_time"][stage].get<double>(), 1.3 * base[stage].get<double>()) << set;
 }
 

@@ -43,8 +43,9 @@ TEST_F(WholeTreelets, ChangeNoAnswerInEitherEngine) {
   }
 }
 
-// By hand: eight rays that hit the first of three leaves below the root. The top level is the root of the mesh alone,
-// so that rays begin in it. A node has 256 bytes, the leaves have 320, 320 and 160: all of them are one piece.
+// By hand: eight rays that meet the boxes of all three leaves below the root. The top level is the root of the mesh
+// alone, so that rays begin in it. A node has 256 bytes, the leaves have 320, 160 and 320: all of them are one piece.
+// Memory is read by lines of 64 bytes.
 TEST_F(WholeTreelets, AVisitLoadsThePieceOnce) {
   std::string rays = "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n";
   for (int i = 0; i < 8; ++i) rays += fmt::format("{},camera,-900,0,-900,1,0,1,0,inf\n", i);
@@ -58,13 +59,13 @@ TEST_F(WholeTreelets, AVisitLoadsThePieceOnce) {
   const Json none = run("0"), whole = run("65536"), single = run("1");
   EXPECT_EQ(whole["digest"], none["digest"]);
   EXPECT_EQ(single["digest"], none["digest"]);
-  EXPECT_EQ(bytes_of_shapes(none), 256 + 5 * 64);  // the root and a leaf of two blocks of 160 bytes
+  EXPECT_EQ(bytes_of_shapes(none), 64 * (4 + 5 + 3 + 6));  // leaves stand one behind another, and share lines
   EXPECT_EQ(whole["packets"]["issued"], 1);
-  EXPECT_EQ(bytes_of_shapes(whole), 256 + 800);
+  EXPECT_EQ(bytes_of_shapes(whole), 64 * 17);
   EXPECT_EQ(whole["structure"]["treelets"]["largest"], 256 + 800);
   // Every node is a piece by itself: visits as without.
   EXPECT_EQ(single["packets"]["issued"], none["packets"]["issued"]);
-  EXPECT_EQ(bytes_of_shapes(single), bytes_of_shapes(none));
+  EXPECT_EQ(bytes_of_shapes(single), 64 * (4 + 5 + 3 + 5));  // each begins with a line of its own
 }
 
 TEST_F(WholeTreelets, LargerPiecesMakeFewerVisits) {

@@ -29,7 +29,7 @@ void expect_one_picture(BuiltinScene builtin, std::uint32_t salt) {
     c.image = picture.image;
     const accel::Accel accel = accel::build(scene, c.bvh, *make_sequential_executor(), c.accuracy, c.cull_planes);
     c.collections.capacity =
-        std::max<std::int64_t>(minimum_capacity(c, accel.width, accel.max_depth), 4 * c.packets.rays);
+        std::max<std::int64_t>(minimum_capacity(c, accel.most_ways(), accel.levels()), 4 * c.packets.rays);
     // Few paths at a time, many at a time.
     shading::PathTracer tracer(scene, c, seed % 2 ? 1000 : 5, static_cast<std::size_t>(shader_workers(c)));
     run_native(c, accel, size, tracer, on_threads(cell.threads));

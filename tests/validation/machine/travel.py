@@ -83,6 +83,7 @@ class Travel:
         if d is None:
             return False
         packet, travels = self.free[d][-1], self.topology.resources > 1
+        packet.memberships, packet.owners, packet.rays = False, set(range(self.topology.resources)), []
         if travels:
             out = self.way_out(packet)
             if not out.has_place() or (self.bubble and out.spare_places() < 2):
@@ -91,7 +92,6 @@ class Travel:
         self.turn = (d + 1) % len(self.free)
         group = self.groups.popleft()
         self.dispatch(now, len(group.rays))
-        packet.memberships, packet.owners, packet.rays = False, set(range(self.topology.resources)), []
         packet.records = list(zip(group.rays, group.addresses or [None] * len(group.rays)))
         packet.left = self.topology.resources - 1
         loaded = self.take_slots(packet, now)
