@@ -37,6 +37,11 @@ struct OwnKey {
   Relaxed relaxed = {};
 };
 
+// Clang 14 deduces no arguments of aggregates by itself.
+template <class Of>
+OwnKey(std::string_view, const char*, std::optional<std::int64_t> OwnKeys::*, Of, IntRange, const char*, const char*,
+       const char* = nullptr, Better = Better::kTwice, Relaxed = {}) -> OwnKey<Of>;
+
 /// The one list of what may differ from resource to resource, beside testers. Reader, schema, pages, messages, rules
 /// and machine go through it; core/config/own_sections.h applies it.
 inline constexpr std::tuple kOwnKeys{
