@@ -1,4 +1,9 @@
 // Machines of rays whose links and routers go by clocks of their own.
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "tests/app/time/timed_run.h"
@@ -73,30 +78,51 @@ TEST_F(MachineClocks, SlowerClocksTakeLonger) {
   EXPECT_LT(cycles(clusters("")), at(1499, 2));  // nearly the same clock, but another one
 }
 
-// One ray, one packet that goes round: every visit, link and router is a term of the sum. Twice the frequency of all
-// links and routers takes half of their cycles, besides the synchronisers at both sides of each.
+/// When a packet that leaves its resource at `leaves` is at the next one, in cycles of 1 ns: the link takes it over at
+/// its next edge, moves it by its own clock, and the other resource takes it over at its own next edge.
+std::uint64_t crossed(std::uint64_t leaves, std::uint64_t mhz, std::uint64_t wait, std::uint64_t on_link) {
+  const auto next_edge = [](std::uint64_t cycles, std::uint64_t from_mhz, std::uint64_t to_mhz) {
+    return (cycles * to_mhz + from_mhz - 1) / from_mhz;
+  };
+  return next_edge(next_edge(leaves, 1000, mhz) + wait + on_link, mhz, 1000) + wait;
+}
+
+// One packet that goes to the other resource and back: every visit and link is a term of the sum. What the resources
+// take themselves is what a machine of one clock says of when the packet leaves them.
 TEST_F(MachineClocks, AWayTakesTheCyclesOfItsClocks) {
   program_.write("rays.csv",
                  "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n0,camera,0,0,900,0,0,1,0,inf\n1,camera,0,0,900,0,0,1,0,inf\n");
-  const auto at = [&](int latency, const std::string& clocks) {
-    return cycles(
-        report(fmt::format("scene: {{builtin: terrain, triangles: 18}}\nworkload: {{rays_from: rays.csv}}\n"
-                           "engine: {{clock_mhz: 1000}}\n{}"
-                           "rays: {{placement: round_robin}}\npackets: {{rays: 2}}\n"
-                           "topology: {{shape: graph, nodes: [{{name: r, count: 2}}], links: [{{line: "
-                           "'r[*]', both: true, latency_cycles: {}}}]}}\n",
-                           clocks, latency)));
+  const auto run = [&](std::uint64_t latency, const std::string& clocks) {
+    return report(fmt::format("scene: {{builtin: terrain, triangles: 18}}\nworkload: {{rays_from: rays.csv}}\n"
+                              "engine: {{clock_mhz: 1000}}\n{}"
+                              "rays: {{placement: round_robin}}\npackets: {{rays: 2}}\n"
+                              "topology: {{shape: graph, nodes: [{{name: r, count: 2}}], links: [{{line: "
+                              "'r[*]', both: true, latency_cycles: {}}}]}}\n",
+                              clocks, latency),
+                  {}, "trace.json");
   };
-  const std::uint64_t near = at(100, ""), far = at(200, "");
-  const std::uint64_t links = (far - near) / 100;  // that are crossed one after the other
-  EXPECT_GE(links, 2u);
-  EXPECT_EQ(far - near, 100 * links);
-  EXPECT_EQ(at(200, "clocks: {noc: 2000, synchroniser_cycles: 0}\n"), near);
-  // A synchroniser of two at 500 ps and one of two at 1 ns at each link.
-  EXPECT_EQ(at(200, "clocks: {noc: 2000, synchroniser_cycles: 2}\n"), near + 3 * links);
-  const std::uint64_t slow = at(100, "clocks: {noc: 500, synchroniser_cycles: 1}\n");
-  EXPECT_GE(slow, far + 3 * links);
-  EXPECT_LE(slow, far + 5 * links);  // and up to a cycle until the next edge before and behind each synchroniser
+  const std::uint64_t latency = 100;
+  const Json one = run(latency, "");
+  std::vector<std::uint64_t> leaves;
+  for (const Json& slice : Json::parse(program_.read("trace.json"))["traceEvents"])
+    if (slice["ph"] == "X" && slice["name"] == "packet") leaves.push_back(slice["ts"]);
+  ASSERT_EQ(leaves.size(), 2u);
+  ASSERT_EQ(one["links"].size(), 2u);
+  const std::uint64_t flits = one["links"][0]["cycles"]["busy"];
+  ASSERT_EQ(one["links"][1]["cycles"]["busy"], flits);
+  const std::uint64_t on_link = latency + flits - 1;  // until the last flit is there
+  ASSERT_GT(leaves[1], leaves[0] + on_link);
+  const std::uint64_t visit = leaves[1] - (leaves[0] + on_link), end = cycles(one) - (leaves[1] + on_link);
+  EXPECT_EQ(cycles(run(2 * latency, "")), cycles(one) + 2 * latency);
+  // Twice the frequency takes half of the cycles, besides a synchroniser of 500 ps and one of 1 ns at each link.
+  EXPECT_EQ(cycles(run(2 * latency, "clocks: {noc: 2000, synchroniser_cycles: 0}\n")), cycles(one));
+  EXPECT_EQ(cycles(run(2 * latency, "clocks: {noc: 2000, synchroniser_cycles: 2}\n")), cycles(one) + 2 * 3);
+  for (const std::uint64_t mhz : {2000u, 1499u, 750u, 500u, 333u})
+    for (const std::uint64_t wait : {0u, 1u, 2u, 5u}) {
+      const Json two = run(latency, fmt::format("clocks: {{noc: {}, synchroniser_cycles: {}}}\n", mhz, wait));
+      const std::uint64_t there = crossed(leaves[0], mhz, wait, on_link);
+      EXPECT_EQ(cycles(two), crossed(there + visit, mhz, wait, on_link) + end) << mhz << " MHz, " << wait;
+    }
 }
 
 }  // namespace

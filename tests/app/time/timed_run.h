@@ -17,14 +17,16 @@ class TimedRun : public testing::Test {
  protected:
   using Json = nlohmann::ordered_json;
 
-  /// The report of a run on the cycle engine, without the search for the bottleneck.
-  Json report(const std::string& machine, std::vector<std::string> sets = {}) {
+  /// The report of a run on the cycle engine, without the search for the bottleneck. `trace`: the name of its timeline
+  /// in the program's folder; empty: none.
+  Json report(const std::string& machine, std::vector<std::string> sets = {}, const std::string& trace = "") {
     program_.write("machine.yaml", machine);
     app::RunArguments arguments;
     arguments.config = (program_.folder() / "machine.yaml").string();
     sets.insert(sets.begin(), {"engine.kind=cycle", "engine.what_if=false"});
     arguments.sets = std::move(sets);
     arguments.out = (program_.folder() / "out").string();
+    if (!trace.empty()) arguments.trace.file = (program_.folder() / trace).string();
     arguments.quiet = arguments.force = true;
     app::run_command(arguments);
     return Json::parse(program_.read("out/report.json"));
