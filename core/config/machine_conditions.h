@@ -56,9 +56,14 @@ constexpr bool has_many_lanes(const TestersConfig& testers) {
   return testers.simd.lanes > 1;
 }
 
+/// Tells whether `test` holds for the testers of some resource.
+template <class Test>
+bool any_testers(const C& c, const Test& test) {
+  return test(c.testers) ||
+         any_own(c.topology, [&](const OwnOf& one) { return one.testers != nullptr && test(*one.testers); });
+}
 inline bool has_warps(const C& c) {
-  return c.testers.simt.warp > 0 || std::any_of(c.topology.overrides.begin(), c.topology.overrides.end(),
-                                                [](const ResourceOverride& one) { return one.testers.simt.warp > 0; });
+  return any_testers(c, [](const TestersConfig& one) { return one.simt.warp > 0; });
 }
 constexpr bool has_sky_map(const C& c) {
   return c.scene.sky && !c.scene.sky->file.empty();
@@ -221,18 +226,17 @@ inline constexpr Condition kAnyHitUnits{asks_units, "no units decide any-hit cal
 inline constexpr Condition kAnyHitShaders{
     [](const C& c, const S& s) { return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kShader; },
     "no shader worker decides any-hit calls"};
-inline constexpr Condition kVectors{[](const C& c, const S&) {
-                                      return has_many_lanes(c.testers) || any_own(c.topology, [](const OwnOf& one) {
-                                               return one.testers != nullptr && has_many_lanes(*one.testers);
-                                             });
-                                    },
+inline constexpr Condition kVectors{[](const C& c, const S&) { return any_testers(c, has_many_lanes); },
                                     "units have one lane"};
 
 inline constexpr Condition kWarps{[](const C& c, const S&) { return has_warps(c); },
                                   "rays go by themselves, not in warps"};
-inline constexpr Condition kRepacks{
-    [](const C& c, const S&) { return c.testers.simt.compaction == SimtConfig::Compaction::kRepack; },
-    "rays are not packed into new warps"};
+inline constexpr Condition kRepacks{[](const C& c, const S&) {
+                                      return any_testers(c, [](const TestersConfig& one) {
+                                        return one.simt.compaction == SimtConfig::Compaction::kRepack;
+                                      });
+                                    },
+                                    "rays are not packed into new warps"};
 inline constexpr Condition kOwnCaches{[](const C& c, const S&) { return c.memory.l1_kib > 0; },
                                       "resources have no caches of their own"};
 inline constexpr Condition kEndFlags{

@@ -14,11 +14,13 @@ void check_collections(const Config& c, const RuleBreach& refuse) {
   const auto no = [&](bool wrong, const char* key, const std::string& message) {
     if (wrong) refuse(key, message + without);
   };
-  no(c.topology.shape == TopologyShape::kCentral || c.topology.shape == TopologyShape::kBus, "topology.shape",
-     fmt::format("the rays of a treelet are tested one by one and leave it for different places, which {} does not "
-                 "carry; expected a ring or another network, found {}",
-                 c.topology.shape == TopologyShape::kBus ? "an answer on a bus" : "a central unit",
-                 enum_name(c.topology.shape)));
+  const bool bus = is_bus(c.topology), drawn = c.topology.shape == TopologyShape::kGraph;
+  no(bus || is_central(c.topology), drawn ? "topology.nodes" : "topology.shape",
+     fmt::format(
+         "the rays of a treelet are tested one by one and leave it for different places, which {} does not "
+         "carry; expected a ring or another network, found {}",
+         bus ? "an answer on a bus" : "a central unit",
+         drawn ? enum_name(bus ? GraphNodeKind::kBus : GraphNodeKind::kPacketProcess) : enum_name(c.topology.shape)));
   no(c.packets.shapes == PacketShapes::kSingle, "packets.shapes",
      "a visit takes rays through a whole treelet; expected strip, found single");
   no(c.packets.results != PacketResults::kMask, "packets.results",

@@ -1,6 +1,11 @@
 #include "core/config/load/warp_rules.h"
 
+#include <cstdint>
+#include <string>
+
 #include <fmt/format.h>
+
+#include "core/config/config.h"
 
 namespace carousel::config {
 
@@ -12,13 +17,17 @@ class WarpRules {
 
   void check() {
     if (c.engine.kind != EngineKind::kCycle) return;
-    check("testers", c.testers);
-    for (std::size_t i = 0; i < c.topology.overrides.size(); ++i)
-      check(fmt::format("topology.overrides.{}.testers", i), c.topology.overrides[i].testers);
+    check("testers", c.testers, c.rays.slots_per_resource);
+    for_each_own(c.topology, [&](const OwnOf& one) {
+      if (one.testers != nullptr)
+        check(own_place(one) + ".testers", *one.testers,
+              one.keys->slots_per_resource.value_or(c.rays.slots_per_resource));
+    });
   }
 
  private:
-  void check(const std::string& testers, const TestersConfig& of) {
+  /// `slots`: of the resources with these testers.
+  void check(const std::string& testers, const TestersConfig& of, std::int64_t slots) {
     const SimtConfig& simt = of.simt;
     if (simt.warp == 0) return;
     const auto breach = [&](const char* key, std::string message) { breach_(testers + ".simt." + key, message); };
@@ -26,9 +35,9 @@ class WarpRules {
       breach("warp", fmt::format("warps are of resources that trace their own rays, not those of packets; expected 0, "
                                  "or topology.shape: independent; found {}",
                                  simt.warp));
-    if (simt.warp > c.rays.slots_per_resource)
+    if (simt.warp > slots)
       breach("warp", fmt::format("no warp would ever be full; expected at most rays.slots_per_resource = {}, found {}",
-                                 c.rays.slots_per_resource, simt.warp));
+                                 slots, simt.warp));
     if (simt.compaction == SimtConfig::Compaction::kRepack && simt.idle_lanes == SimtConfig::IdleLanes::kHelp)
       breach("idle_lanes",
              "no ray of a warp that is packed anew for each step has ended; expected wait, or "

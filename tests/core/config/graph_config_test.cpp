@@ -116,6 +116,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"GroupWithoutBrackets",
                   "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: r}]}\n",
                   "r is a group of 3; expected r[*], r[0] or r[0..2], found 'r'"},
+        BadConfig{
+            "TreeletsOnABus",
+            "bvh: {treelets: {bytes: 4096}}\ntopology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: "
+            "bus}],\n  links: [{from: 'r[*]', to: b, both: true}]}\n",
+            "topology.nodes: the rays of a treelet are tested one by one and leave it for different places, which "
+            "an answer on a bus does not carry; expected a ring or another network, found bus"},
+        BadConfig{
+            "TreeletsOfAPacketProcess",
+            "bvh: {treelets: {bytes: 4096}}\n"
+            "topology: {shape: graph, nodes: [{name: c, kind: packet_process}], links: []}\n",
+            "topology.nodes: the rays of a treelet are tested one by one and leave it for different places, which "
+            "a central unit does not carry; expected a ring or another network, found packet_process"},
         BadConfig{"NoWay", "topology: {shape: graph, nodes: [{name: a}, {name: b}], links: [{from: a, to: b}]}\n",
                   "topology.links: there is no way from b to a"},
         BadConfig{"TwoLinks",

@@ -109,6 +109,13 @@ TEST(OwnKeys, WhatAllResourcesShareIsRefusedByName) {
            Refused{node + "ready: 4}], overrides: [{resource: 1, ready: 8}]}\n",
                    "topology.overrides.0.resource: resource 1 has numbers of its own in topology.nodes.0 already; "
                    "expected one of the two places"},
+           Refused{node + "testers: {simt: {warp: 8}}}]}\n",
+                   "topology.nodes.0.testers.simt.warp: warps are of resources that trace their own rays, not those of "
+                   "packets"},
+           Refused{"topology: {shape: independent, resources: 2, overrides: [{resource: 1, slots_per_resource: 16, "
+                   "testers: {simt: {warp: 32}}}]}\n",
+                   "topology.overrides.0.testers.simt.warp: no warp would ever be full; expected at most "
+                   "rays.slots_per_resource = 16, found 32"},
        }) {
     const std::string head = bad.text.starts_with("memory") ? "" : "memory: {l1_kib: 0}\n";
     EXPECT_THAT(texts(issues_of("scene: {builtin: cornell}\nengine: {kind: cycle}\n" + head + bad.text)),
