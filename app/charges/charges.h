@@ -24,7 +24,7 @@ struct Charge {
 /// The one list of them.
 std::span<const Charge> all_charges();
 
-/// Those of which a simulated run of such a machine and scene makes use.
+/// The charges that a simulated run of such a machine and scene would meet and does not pay.
 std::vector<const Charge*> uncharged(const LocatedConfig& located, const SceneFacts& scene);
 
 /// Reads a configuration with everything charged that has a key, as far as the machine may have it; what the user sets

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -18,7 +19,7 @@ struct OwnSections {
   TestersConfig testers;
 };
 
-/// Those of a resource. Only the cycle engine has resources that differ.
+/// The sections of one resource. Only the cycle engine has resources that differ.
 inline OwnSections own_sections(const Config& c, std::int64_t resource) {
   OwnSections out{c.rays, c.packets, c.collections, c.memory, c.testers};
   if (c.engine.kind != EngineKind::kCycle) return out;

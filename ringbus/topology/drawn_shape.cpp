@@ -55,7 +55,8 @@ void draw_two_ways(TopologyConfig& out, std::int64_t resources) {
   out.tour = Tour::kNearest;
 }
 
-/// Lines from each bridge through its group and back, and the ring of bridges.
+/// Draws lines from each bridge through its group and back, and the ring of bridges.
+///
 /// A packet goes through the rest of its own group, then round the bridges and into the groups that want it, and at
 /// last into its own group again. A bridge has room for all packets there are, so that neither ring waits for the
 /// other.
@@ -84,7 +85,7 @@ DrawnShape draw_shape(const TopologyConfig& config) {
   out.config.shape = TopologyShape::kGraph;
   out.config.nodes = {drawn_group("r", config.resources)};
   out.config.links.clear();
-  // Keys of graphs that a shape does not feel.
+  // Other shapes do not follow these keys of graphs.
   out.config.routes = Routing::kShortest;
   out.config.tour = Tour::kNames;
   out.config.root.clear();

@@ -9,8 +9,8 @@ namespace carousel::ringbus {
 /// Throws a SimulationError for a shape that has no plan.
 TopologyPlan plan_topology(const TopologyConfig& config);
 
-// One function a shape, each in the file of its name. A hierarchical network, a bus and a
-// central machine are their graphs (drawn_shape.h).
+// One function a shape, each in the file of its name. A hierarchical network, a bus and a central machine are planned
+// as the graphs that drawn_shape.h draws of them.
 TopologyPlan plan_ring(const TopologyConfig& config);
 TopologyPlan plan_bidirectional(const TopologyConfig& config);
 TopologyPlan plan_multi_ring(const TopologyConfig& config);

@@ -143,7 +143,7 @@ inline bool is_bus(const TopologyConfig& c) {
   return std::ranges::any_of(c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kBus; });
 }
 
-/// What some resources have of their own, and the place in the configuration that says so.
+/// One entry of the configuration that lets some resources differ from the others: an override, or a node of a graph.
 struct OwnOf {
   const ResourceOverride* override = nullptr;  ///< null: a node of a graph says so
   std::int64_t first = 0, count = 0;           ///< of the resources of that node
@@ -156,7 +156,7 @@ struct OwnOf {
   }
 };
 
-/// Calls `body` with each OwnOf: of the nodes of a graph, and then of the overrides.
+/// Calls `body` with the OwnOf of each such entry: first those of the nodes of a graph, then those of the overrides.
 template <class Body>
 void for_each_own(const TopologyConfig& topology, const Body& body) {
   std::int64_t first = 0;
@@ -172,7 +172,7 @@ void for_each_own(const TopologyConfig& topology, const Body& body) {
     body(OwnOf{&topology.overrides[i], 0, 0, &topology.overrides[i].testers, &topology.overrides[i].own, i});
 }
 
-/// Tells whether `test` holds for one of them.
+/// Tells whether `test` holds for one of these entries.
 template <class Test>
 bool any_own(const TopologyConfig& topology, const Test& test) {
   bool any = false;
@@ -185,7 +185,7 @@ inline bool has_own(const TopologyConfig& topology) {
   return any_own(topology, [](const OwnOf&) { return true; });
 }
 
-/// The place in the configuration of what some resources have of their own.
+/// The path of the entry in the configuration.
 inline std::string own_place(const OwnOf& one) {
   return (one.override != nullptr ? "topology.overrides." : "topology.nodes.") + std::to_string(one.entry);
 }

@@ -18,7 +18,7 @@ struct ClockTable {
 
   /// The clock of that name in MHz; absent if there is none. `core` and `noc` are there in any case.
   std::optional<std::int64_t> of(std::string_view name) const;
-  /// All of the names.
+  /// The names of all clocks.
   std::vector<std::string> names() const;
 };
 
@@ -32,7 +32,8 @@ struct UsedClock {
   std::string name;
   std::int64_t mhz = 0;
 };
-/// Those of the machine, core first; of several names with one frequency the first one.
+/// The clocks by which parts of the machine go, core first. Clocks of one frequency are one clock, which has the first
+/// of their names.
 std::vector<UsedClock> used_clocks(const TopologyConfig& topology, std::int64_t core_mhz);
 
 }  // namespace carousel::config

@@ -189,7 +189,7 @@ class NetworkRules {
     }
   }
 
-  /// What all resources have in common, though it is a key of testers.
+  /// Some keys of testers are the same in all resources.
   void own_testers_agree(const OwnOf& one) {
     if (one.testers == nullptr) return;
     const std::string place = own_place(one) + ".testers.";

@@ -55,7 +55,7 @@ void check_stop(const GraphNode& node, const std::string& key, const RuleBreach&
     breach(key + ".forward", fmt::format("nothing waits at a stop; expected head, found {}", enum_name(node.forward)));
 }
 
-/// A ring with stops is the whole network, and nothing but synthetic traffic rides on it.
+/// A ring with stops is the whole network, and its stops have no queues.
 void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
   const GraphLink& link = c.links[entry];
@@ -146,7 +146,7 @@ void check_clock_names(const Config& config, const RuleBreach& breach) {
   }
 }
 
-/// What has no clock of its own yet.
+/// Refuses clocks at parts that cannot have one of their own yet.
 void check_clocked_parts(const Config& config, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
   const bool traffic = has_traffic(config);
