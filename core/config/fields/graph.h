@@ -207,8 +207,8 @@ void describe(V& v, GraphNode& c) {
   v.field_or_auto("columns", c.columns, IntRange{1, kMaxResources}, "nodes",
                   "The nodes in a row of a group that has places; auto is all of them.");
   v.field("clock", c.clock, "",
-          "The clock, a name of `clocks`, by which the node passes packets on; left out, core at a resource with "
-          "packets of rays, and otherwise noc.");
+          "The clock, a name of `clocks`, by which the node passes packets on; left out, noc at a router, and with "
+          "synthetic traffic at every node, and core elsewhere.");
   describe(v, c.own);
   v.section("testers", c.testers,
             "The testers of these resources. A key that is not given is as in `testers` of the whole machine.");

@@ -169,6 +169,12 @@ void check_clocked_parts(const Config& config, const RuleBreach& breach) {
              "a drawing that carries more than packets has one clock yet; expected [packets], or equal clocks");
   if (config.faults.links.any() && !traffic)
     breach("faults.links", "links between several clocks have no faults yet; expected none, or equal clocks");
+  for (std::size_t i = 0; i < c.links.size() && is_bus(c); ++i)
+    if (const GraphLink& link = c.links[i]; link.mhz != 0)
+      breach(fmt::format("topology.links.{}.clock", i),
+             fmt::format("a bus moves its packets one after the other by the clock of the resources; expected core, "
+                         "found {}",
+                         link.clock.empty() ? "noc" : link.clock));
   const auto ring = stop_ring_entry(c);
   if (!ring) return;
   for (std::size_t i = 0; i < c.nodes.size(); ++i)

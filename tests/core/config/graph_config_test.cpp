@@ -116,6 +116,11 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"GroupWithoutBrackets",
                   "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: r}]}\n",
                   "r is a group of 3; expected r[*], r[0] or r[0..2], found 'r'"},
+        BadConfig{"BusOfAnotherClock",
+                  "clocks: {noc: 300}\ntopology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: bus}],\n  "
+                  "links: [{from: 'r[*]', to: b, both: true}]}\n",
+                  "topology.links.0.clock: a bus moves its packets one after the other by the clock of the resources; "
+                  "expected core, found noc"},
         BadConfig{
             "TreeletsOnABus",
             "bvh: {treelets: {bytes: 4096}}\ntopology: {shape: graph, nodes: [{name: r, count: 2}, {name: b, kind: "
