@@ -16,8 +16,8 @@ namespace carousel::app {
 nlohmann::ordered_json check_json(const std::string& file, const Prepared& prepared,
                                   const ringbus::DeadlockVerdict& verdict, bool strict);
 
-/// What it prints of a configuration, scene or file that is refused: each error with its place, as far as it is known.
-/// Throws `error` again if it is of another kind.
+/// The same command's answer where `error` refuses the configuration, its scene or a file: each error with its place,
+/// as far as that is known. Throws `error` again if it is neither a ConfigError nor a SceneError nor a FileError.
 nlohmann::ordered_json refusal_json(const std::string& file, const std::exception_ptr& error);
 
 }  // namespace carousel::app

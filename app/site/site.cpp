@@ -88,11 +88,16 @@ std::string encoded(const std::string& text) {
   return out;
 }
 
+bool is_unfinished_sweep(const fs::path& folder) {
+  std::error_code ignored;
+  return is_sweep(folder) && !fs::exists(folder / "sweep.json", ignored);
+}
+
 bool holds_results(const fs::path& folder) {
   return !results_in(folder).empty() || is_sweep(folder);
 }
 
-/// The folders with results in and below a root, by name.
+/// The folders with results in and below a root, by name: kMostFolders at most, and those to a depth of four.
 std::vector<fs::path> folders_with_results(const fs::path& root) {
   std::vector<fs::path> out;
   if (holds_results(root)) out.push_back(root);
@@ -112,13 +117,12 @@ std::vector<fs::path> folders_with_results(const fs::path& root) {
   return out;
 }
 
-/// What a folder holds, in words.
+/// The kinds of the results in a folder, as the list of the site names them, such as "run, sweep, unfinished".
 std::string kinds_in(const fs::path& folder) {
   std::string out;
   for (const fs::path& file : results_in(folder))
     out += (out.empty() ? "" : ", ") + (file.stem() == "report" ? std::string("run") : file.stem().string());
-  if (is_sweep(folder) && !fs::exists(folder / "sweep.json"))
-    out += out.empty() ? "sweep, unfinished" : ", sweep, unfinished";
+  if (is_unfinished_sweep(folder)) out += out.empty() ? "sweep, unfinished" : ", sweep, unfinished";
   return out;
 }
 
@@ -140,19 +144,26 @@ std::optional<fs::path> Site::inside(std::size_t root, const std::vector<std::st
     if (name.empty() || name[0] == '.' || name.find_first_of(std::string_view("\\\0", 2)) != name.npos) return {};
     out /= name;
   }
+  if (!is_inside(root, out)) return {};
   std::error_code error;
   const fs::path real = fs::weakly_canonical(out, error);
   if (error) return {};
-  const auto [left, right] = std::mismatch(roots_[root].begin(), roots_[root].end(), real.begin(), real.end());
-  if (left != roots_[root].end()) return {};
   return real;
+}
+
+bool Site::is_inside(std::size_t root, const fs::path& path) const {
+  std::error_code error;
+  const fs::path real = fs::weakly_canonical(path, error);
+  const auto [left, right] = std::mismatch(roots_[root].begin(), roots_[root].end(), real.begin(), real.end());
+  return !error && left == roots_[root].end();
 }
 
 HttpAnswer Site::index() const {
   std::vector<report::html::Section> sections;
   for (std::size_t r = 0; r < roots_.size(); ++r) {
     Html list;
-    for (const fs::path& folder : folders_with_results(roots_[r])) {
+    const std::vector<fs::path> folders = folders_with_results(roots_[r]);
+    for (const fs::path& folder : folders) {
       const std::string below = folder == roots_[r] ? "" : folder.lexically_relative(roots_[r]).string() + "/";
       list += markup("<li><a href=\"{}/{}\">{}</a>: {}</li>\n", r, encoded(below), below.empty() ? names_[r] : below,
                      kinds_in(folder));
@@ -160,18 +171,21 @@ HttpAnswer Site::index() const {
     sections.push_back(
         {fmt::format("folder-{}", r), names_[r],
          list.empty() ? markup("<p>This folder holds no results yet.</p>\n") : markup("<ul>\n{}</ul>\n", list)});
+    if (folders.size() == kMostFolders)
+      sections.back().body +=
+          markup("<p>This folder may hold more results: the list ends at {} folders.</p>\n", kMostFolders);
   }
   return page(report::html::page_of("Carousel: results", "carousel serve, on this machine only", sections,
                                     nlohmann::ordered_json::object(), {}));
 }
 
-HttpAnswer Site::file_of(const fs::path& file) const {
+HttpAnswer Site::file_of(std::size_t root, const fs::path& file) const {
   std::error_code error;
   if (file.extension() == ".html") {
     // Made anew, so that it is of this version and of the results as they are.
     fs::path json = file;
     json.replace_extension(".json");
-    if (!fs::is_regular_file(json, error)) return refusal(404, "not found");
+    if (!is_inside(root, json) || !fs::is_regular_file(json, error)) return refusal(404, "not found");
     return page(page_of_file(report::read_document(json), json));
   }
   const char* type = type_of(file);
@@ -182,8 +196,9 @@ HttpAnswer Site::file_of(const fs::path& file) const {
 }
 
 HttpAnswer Site::folder_page(std::size_t root, const fs::path& folder) const {
-  const std::vector<fs::path> results = results_in(folder);
-  if (is_sweep(folder) && !fs::exists(folder / "sweep.json")) return page(live_sweep_page(folder));
+  std::vector<fs::path> results = results_in(folder);
+  std::erase_if(results, [&](const fs::path& file) { return !is_inside(root, file); });
+  if (is_unfinished_sweep(folder) && is_inside(root, folder / "points")) return page(live_sweep_page(folder));
   if (results.size() == 1) return page(page_of_file(report::read_document(results.front()), results.front()));
   if (results.empty()) return refusal(404, "not found");
   Html list;
@@ -210,7 +225,7 @@ HttpAnswer Site::answer(const HttpRequest& request) const {
   if (root >= roots_.size()) return refusal(404, "not found");
   const std::optional<fs::path> path = inside(root, names);
   if (!path) return refusal(404, "not found");
-  return folder ? folder_page(root, *path) : file_of(*path);
+  return folder ? folder_page(root, *path) : file_of(root, *path);
 }
 
 }  // namespace carousel::app

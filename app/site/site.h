@@ -30,9 +30,11 @@ class Site {
  private:
   HttpAnswer index() const;
   HttpAnswer folder_page(std::size_t root, const std::filesystem::path& folder) const;
-  HttpAnswer file_of(const std::filesystem::path& file) const;
+  HttpAnswer file_of(std::size_t root, const std::filesystem::path& file) const;
   /// The path below a root; absent for names that would leave it, by dots or by links.
   std::optional<std::filesystem::path> inside(std::size_t root, const std::vector<std::string>& names) const;
+  /// True for a path that is below a root where its links lead, too.
+  bool is_inside(std::size_t root, const std::filesystem::path& path) const;
 
   std::vector<std::filesystem::path> roots_;  // canonical
   std::vector<std::string> names_;            // as the user gave them

@@ -9,14 +9,14 @@ namespace carousel {
 namespace {
 
 constexpr const char* kAddress = "127.0.0.1";
-constexpr std::size_t kMostBody = 1024;  // bytes of a request, none of which is read
 
 void serve(int port, const std::function<HttpAnswer(const HttpRequest&)>& answer, const std::function<void(int)>& ready,
            const std::stop_token& stop) {
   httplib::Server server;
-  server.set_payload_max_length(kMostBody);
-  server.set_keep_alive_max_count(100);
-  server.set_read_timeout(10, 0);
+  // Each request has a connection of its own: its body is never read, and would be taken for the next request.
+  server.set_keep_alive_max_count(1);
+  // An idle connection holds one of the few threads, and the end of the program, for as long.
+  server.set_read_timeout(2, 0);
   // In place of SO_REUSEPORT, which would let another process of this user share the port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;
