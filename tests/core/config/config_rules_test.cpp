@@ -1,19 +1,16 @@
-// Configurations whose keys do not go together, one a rule, with message and position.
+// Configurations whose keys do not go together, one a rule, with message and position. Those of testers are in
+// tester_rules_test.cpp, those of the tree and the ways through it in tree_rules_test.cpp.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/core/config/bad_config.h"
+#include "tests/core/config/config_rule.h"
 
 namespace carousel {
 namespace {
 
-class ConfigRule : public testing::TestWithParam<BadConfig> {};
-
 TEST_P(ConfigRule, IsNamedWithPositionAndExpectation) {
   EXPECT_THAT(texts(issues_of(GetParam().text)), testing::ElementsAre(GetParam().message));
 }
-
-#define SCENE "scene: {builtin: cornell}\n"
 
 INSTANTIATE_TEST_SUITE_P(
     Machines, ConfigRule,
@@ -42,158 +39,6 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"Shape", SCENE "topology: {shape: bus}\n",
                   "test.yaml:2:19: topology.shape: the native engine has no bus; expected ring, bidirectional, "
                   "point_to_point or graph"},
-        BadConfig{"DistributorUnit",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 2}\n",
-                  "test.yaml:3:58: topology.resources: a central machine is one unit, with testers.distributor.testers "
-                  "testers; expected 1, found 2"},
-        BadConfig{"DistributorLanes",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 1}\n"
-                        "testers: {simd: {lanes: 8}}\n",
-                  "test.yaml:4:25: testers.simd.lanes: a tester tests one ray at a time; expected 1, found 8"},
-        BadConfig{"DistributorBanks",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, form: distributor, resources: 1}\n"
-                        "rays: {banks: 4}\n",
-                  "test.yaml:4:15: rays.banks: each tester reads a record a cycle from its own ray memory; expected 0, "
-                  "found 4"},
-        BadConfig{"WarpsOfPackets", SCENE "engine: {kind: cycle}\ntesters: {simt: {warp: 32}}\n",
-                  "test.yaml:3:24: testers.simt.warp: warps are of resources that trace their own rays, not those of "
-                  "packets; expected 0, or topology.shape: independent; found 32"},
-        BadConfig{"WarpsWithoutRays",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\nrays: {slots_per_resource: 16}\n"
-                        "testers: {simt: {warp: 32}}\n",
-                  "test.yaml:5:24: testers.simt.warp: no warp would ever be full; expected at most "
-                  "rays.slots_per_resource = 16, found 32"},
-        BadConfig{"HelpInPackedWarps",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\n"
-                        "testers: {simt: {warp: 32, compaction: repack, idle_lanes: help}}\n",
-                  "test.yaml:4:60: testers.simt.idle_lanes: no ray of a warp that is packed anew for each step has "
-                  "ended; expected wait, or compaction: none; found help"},
-        BadConfig{
-            "LanesInWarps",
-            SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\n"
-                  "testers: {simt: {warp: 32}, simd: {lanes: 4}}\n",
-            "test.yaml:4:43: testers.simd.lanes: the lanes of a warp share units that test one ray each; expected "
-            "1, and more units; found 4"},
-        BadConfig{
-            "FlagsInWarps",
-            SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\ntesters: {simt: {warp: 32}}\n"
-                  "memory: {strip_end: flag}\n",
-            "test.yaml:5:21: memory.strip_end: the lanes of a warp ask for lines, whose number they have to know; "
-            "expected length, found flag"},
-        BadConfig{"HelpersInWarps",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\ntesters: {simt: {warp: 32}}\n"
-                        "shading: {idle_resources_shade: true}\n",
-                  "test.yaml:5:33: shading.idle_resources_shade: resources with warps do not help the shader workers; "
-                  "expected false, found true"},
-        BadConfig{"CentralUnit", SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 4}\n",
-                  "test.yaml:3:39: topology.resources: a central machine is one unit, with testers.simd.lanes cells; "
-                  "expected 1, found 4"},
-        BadConfig{"CellsOfShapes",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 1}\n"
-                        "testers: {simd: {lanes: 8, map: shapes}}\n",
-                  "test.yaml:4:33: testers.simd.map: a test cell holds a ray; expected rays, found shapes"},
-        BadConfig{"CellsOfTreelets",
-                  SCENE "engine: {kind: cycle}\ntopology: {shape: central, resources: 1}\n"
-                        "collections: {traversal: treelet}\n",
-                  "test.yaml:4:26: collections.traversal: test cells test the rays of a collection side by side; "
-                  "expected spread or ordered, found treelet"},
-        BadConfig{"BanksAndAPort", SCENE "engine: {kind: cycle}\nrays: {banks: 4, reads_per_cycle: 2}\n",
-                  "test.yaml:3:35: rays.reads_per_cycle: each bank has a port of its own; expected 0, or rays.banks: "
-                  "0; found 2"},
-        BadConfig{"BanksOfTreelets",
-                  SCENE "engine: {kind: cycle}\nrays: {banks: 4}\ncollections: {traversal: treelet}\n",
-                  "test.yaml:3:15: rays.banks: banks are modelled where the rays of a packet are read for one test: "
-                  "not with independent, treelet or bundles; expected 0, found 4"},
-        BadConfig{
-            "InverseForTwoSteps", SCENE "accuracy: {instance_data: inverse}\nengine: {kind: cycle}\n",
-            "test.yaml:2:27: accuracy.instance_data: transform: two_step subtracts the translation first; expected "
-            "forward or rt, found inverse"},
-        BadConfig{
-            "TwoStepsForOneMatrix",
-            SCENE "accuracy: {transform: inverse_matrix, instance_data: rt}\nengine: {kind: cycle}\n",
-            "test.yaml:2:54: accuracy.instance_data: transform: inverse_matrix has the translation multiplied in; "
-            "expected forward or inverse, found rt"},
-        BadConfig{
-            "ForwardInvertedAtBuild",
-            SCENE "accuracy: {instance_data: forward, invert: build}\nengine: {kind: cycle}\n",
-            "test.yaml:2:44: accuracy.invert: instance_data: forward stores nothing inverted; expected visit, found "
-            "build"},
-        BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\nengine: {kind: cycle}\n",
-                  "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
-        BadConfig{"CellsThatMove", SCENE "bvh: {builder: octree, quality: high}\n",
-                  "test.yaml:2:33: bvh.quality: the nodes of bvh.builder: octree stay where space is divided; expected "
-                  "fast, or bvh.builder: sah or spatial; found high"},
-        BadConfig{"MergedInParts",
-                  "scene: {builtin: cornell, placement: partitioned}\nengine: {transport: mpi}\nbvh: {merge: "
-                  "world}\ncollections: {home: hash, when_full: spill}\n",
-                  "test.yaml:3:14: bvh.merge: merged meshes are not partitioned yet; expected none, found world, or "
-                  "scene.placement: replicated"},
-        BadConfig{"CullPlanes", SCENE "cull_planes: {count: 9}\n",
-                  "test.yaml:2:22: cull_planes.count: expected an integer from 0 to 8 (planes per child), found 9"},
-        BadConfig{"CullPlaneOrder", SCENE "cull_planes: {order: planes}\n",
-                  "test.yaml:2:22: cull_planes.order: expected one of box_first, planes_first, found 'planes'"},
-        BadConfig{
-            "TopPlanesOfInverseMatrices",
-            SCENE "cull_planes: {count: 2, levels: tlas}\naccuracy: {transform: inverse_matrix}\n",
-            "test.yaml:3:23: accuracy.transform: cull planes above the instances could lose hits of inverse_matrix; "
-            "expected two_step, two_step_double or transpose_if_rotation, or cull_planes.levels: blas"},
-        BadConfig{"TopPlanesOfMergedMeshes", SCENE "cull_planes: {count: 2, levels: tlas}\nbvh: {merge: world}\n",
-                  "test.yaml:2:33: cull_planes.levels: merged meshes hang in the top level, whose planes bound "
-                  "instances; expected blas, or bvh.merge: none; found tlas"},
-        BadConfig{"BundlesInGroups", SCENE "bundles: {size: 8}\nbvh: {levels: 3}\n",
-                  "test.yaml:3:15: bvh.levels: bundles are not tested within groups of instances; expected 2, or "
-                  "bundles.size: 0; found 3"},
-        BadConfig{"SpheresInGroups", SCENE "bvh: {levels: 3, elements: spheres}\n",
-                  "test.yaml:2:15: bvh.levels: spheres are not tested within groups of instances; expected 2, or "
-                  "bvh.elements: boxes; found 3"},
-        BadConfig{"OrientedBoxesOfFastTriangles", SCENE "bvh: {elements: oriented_boxes}\naccuracy: {triangle: fast}\n",
-                  "test.yaml:3:22: accuracy.triangle: oriented boxes could lose hits of fast; expected watertight or "
-                  "exact, or bvh.elements: boxes"},
-        BadConfig{"OrientedBoxesWithPlanes", SCENE "cull_planes: {count: 2}\nbvh: {elements: oriented_boxes}\n",
-                  "test.yaml:3:17: bvh.elements: cull planes need boxes to be tested with; expected boxes, or "
-                  "cull_planes.count: 0; found oriented_boxes"},
-        BadConfig{"SharedNormalsOfSpheres", SCENE "cull_planes: {count: 1, object: sphere, shared_normals: true}\n",
-                  "test.yaml:2:57: cull_planes.shared_normals: a sphere has no normal; expected false, found true, or "
-                  "cull_planes.object: planes"},
-        BadConfig{"SpheresAroundInstances", SCENE "cull_planes: {count: 1, object: sphere, levels: all}\n",
-                  "test.yaml:2:49: cull_planes.levels: spheres stand below the instances; expected blas, found all, or "
-                  "cull_planes.object: planes"},
-        BadConfig{"TopPlanesAboveGroups", SCENE "cull_planes: {count: 2, levels: all}\nbvh: {levels: 8}\n",
-                  "test.yaml:3:15: bvh.levels: cull planes above the instances are not tested within groups of "
-                  "instances; expected 2, or cull_planes.levels: blas; found 8"},
-        BadConfig{"LevelsOfAnotherScene", "scene: {builtin: cornell, levels: 3}\n",
-                  "test.yaml:1:35: scene.levels: only the built-in scene of instances has a depth to choose; expected "
-                  "2, found 3"},
-        BadConfig{"CullPlanesOfFastTriangles", SCENE "cull_planes: {count: 2}\naccuracy: {triangle: fast}\n",
-                  "test.yaml:3:22: accuracy.triangle: cull planes could lose hits of fast; expected watertight or "
-                  "exact, or cull_planes.count: 0"},
-        BadConfig{"CullPlanesOfPlainBoxes", SCENE "cull_planes: {count: 2}\naccuracy: {box: plain}\n",
-                  "test.yaml:3:17: accuracy.box: cull planes go with conservative boxes; expected conservative, found "
-                  "plain, or cull_planes.count: 0"},
-        BadConfig{"BundleOfOne", SCENE "bundles: {size: 1}\n",
-                  "test.yaml:2:17: bundles.size: expected 2 rays or more, or 0 for none; found 1"},
-        BadConfig{"BundlesLargerThanTheStore", SCENE "bundles: {size: 16}\nrays: {slots_per_resource: 8}\n",
-                  "test.yaml:2:17: bundles.size: a bundle's rays live in one resource; expected at most "
-                  "rays.slots_per_resource = 8, found 16"},
-        BadConfig{"BundlesInOrder", SCENE "bundles: {size: 16}\ncollections: {traversal: ordered}\n",
-                  "test.yaml:3:26: collections.traversal: rays of a bundle go several ways at once; expected spread or "
-                  "treelet, found ordered, or bundles.size: 0"},
-        BadConfig{"BundlesShapeByShape", SCENE "bundles: {size: 16}\npackets: {shapes: single}\n",
-                  "test.yaml:3:19: packets.shapes: a bundle is tested against a whole strip; expected strip, found "
-                  "single, or bundles.size: 0"},
-        BadConfig{"BundlesLookForSlots", SCENE "bundles: {size: 16}\nrays: {placement: addressed}\n",
-                  "test.yaml:3:19: rays.placement: bundles are made before their rays have slots; expected balanced or "
-                  "round_robin, found addressed, or bundles.size: 0"},
-        BadConfig{"BundlesOnIndependentResources",
-                  SCENE "bundles: {size: 16}\ntopology: {shape: independent}\nengine: {kind: cycle}\n",
-                  "test.yaml:3:19: topology.shape: independent resources trace single rays; expected a ring or another "
-                  "network, found independent, or bundles.size: 0"},
-        BadConfig{"BundlesStrictlyAnyHit", SCENE "bundles: {size: 16, order: any_hit_only, strict: true}\n",
-                  "test.yaml:2:50: bundles.strict: any_hit_only takes bundles along where only some of their rays hit; "
-                  "expected false, found true"},
-        BadConfig{"BundleSimilarity", SCENE "bundles: {builder: {similarity: originbox}}\n",
-                  "test.yaml:2:33: bundles.builder.similarity: expected one of growth, solid_angle, component_range, "
-                  "origin_box, found 'originbox'; did you mean 'origin_box'?"},
         BadConfig{"Carry", SCENE "packets: {carry: data}\n",
                   "test.yaml:2:18: packets.carry: the native engine has no packets that carry data; expected "
                   "reference, found data"},
@@ -208,38 +53,6 @@ INSTANTIATE_TEST_SUITE_P(
                   SCENE "engine: {kind: cycle}\npackets: {results: per_shape}\ncollections: {traversal: ordered}\n",
                   "test.yaml:3:20: packets.results: traversal: ordered has one result for a whole strip, the next "
                   "node; expected mask, message or implied_order, found per_shape"},
-        BadConfig{"AnyHit", SCENE "testers: {any_hit: shader}\n",
-                  "test.yaml:2:20: testers.any_hit: the native engine has no any-hit calls by shader workers; expected "
-                  "inline, found shader"},
-        BadConfig{"AnyHitOfOneResource",
-                  SCENE "engine: {kind: cycle}\ntopology: {overrides: [{resource: 1, testers: {any_hit: shader}}]}\n",
-                  "test.yaml:3:57: topology.overrides.0.testers.any_hit: all resources have the same any-hit calls; "
-                  "expected inline, found shader"},
-        BadConfig{"Lanes", SCENE "testers: {simd: {lanes: 65}}\n",
-                  "test.yaml:2:25: testers.simd.lanes: expected an integer from 1 to 64 (lanes), found 65"},
-        BadConfig{"LanesOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {simd: {lanes: 0}}}]}\n",
-                  "test.yaml:2:62: topology.overrides.0.testers.simd.lanes: expected an integer from 1 to 64 (lanes), "
-                  "found 0"},
-        BadConfig{"WindowOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {window: 4}}]}\n",
-                  "test.yaml:2:56: topology.overrides.0.testers.window: the native engine has no choice among packets "
-                  "that have "
-                  "arrived; expected 1, found 4"},
-        BadConfig{"WindowWithoutQueues",
-                  SCENE "engine: {kind: cycle}\ntesters: {window: 4}\ntopology: {shape: independent}\n",
-                  "test.yaml:3:19: testers.window: topology.shape: independent has no input queues; expected 1, found "
-                  "4"},
-        BadConfig{"OwnRaysOfOneResource", SCENE "topology: {overrides: [{resource: 1, testers: {own_rays: after}}]}\n",
-                  "test.yaml:2:58: topology.overrides.0.testers.own_rays: all resources test their own rays at the "
-                  "same time; expected before, found after"},
-        BadConfig{
-            "OwnRaysWithoutPackets",
-            SCENE "engine: {kind: cycle}\ntopology: {shape: independent}\ntesters: {own_rays: after}\n",
-            "test.yaml:4:21: testers.own_rays: topology.shape: independent has no packets that come back; expected "
-            "before, found after"},
-        BadConfig{"OwnRaysOfAMulticast",
-                  SCENE "engine: {kind: cycle}\nmemory: {fetch: multicast}\ntesters: {own_rays: after}\n",
-                  "test.yaml:4:21: testers.own_rays: an issuer multicasts the shapes that it fetches before its packet "
-                  "leaves, for its own rays; expected before, or memory.fetch: resource; found after"},
         BadConfig{"MulticastPastOwnCaches", SCENE "engine: {kind: cycle}\nmemory: {fetch: multicast, l1_kib: 4}\n",
                   "test.yaml:3:36: memory.l1_kib: a shared cache multicasts to shape buffers; expected 0, or "
                   "memory.fetch: resource; found 4"},
@@ -339,60 +152,6 @@ INSTANTIATE_TEST_SUITE_P(
                   "to the view"},
         BadConfig{"UpOfNothing", SCENE "camera: {eye: [0, 9, 0], target: [0, 2, 0], up: [0, 0, 0]}\n",
                   "test.yaml:2:49: camera.up: expected a direction, found a vector of length 0"},
-        BadConfig{"OrderedSingle", SCENE "collections: {traversal: ordered}\npackets: {shapes: single}\n",
-                  "test.yaml:3:19: packets.shapes: traversal: ordered sorts the hits of a whole strip; "
-                  "expected strip, "
-                  "found single"},
-        BadConfig{
-            "OrderOfSpread", SCENE "collections: {order: stored}\n",
-            "test.yaml:2:22: collections.order: traversal: spread takes a ray into all children at once; expected "
-            "nearest, or traversal: ordered or treelet, found stored"},
-        BadConfig{"OrderOfNativeTreelets", SCENE "collections: {traversal: treelet, order: stored}\n",
-                  "test.yaml:2:42: collections.order: the native engine takes a ray through a treelet nearest first; "
-                  "expected nearest, or engine.kind: cycle, found stored"},
-        BadConfig{"TreeletsOfTestCells",
-                  SCENE "bvh: {treelets: {bytes: 4096}}\nengine: {kind: cycle}\ntopology: {shape: bus}\n",
-                  "test.yaml:4:19: topology.shape: the rays of a treelet are tested one by one and leave it for "
-                  "different places, which an answer on a bus does not carry; expected a ring or another network, "
-                  "found bus, or bvh.treelets.bytes: 0"},
-        BadConfig{"TreeletsOfSingleShapes", SCENE "bvh: {treelets: {bytes: 4096}}\npackets: {shapes: single}\n",
-                  "test.yaml:3:19: packets.shapes: a visit takes rays through a whole treelet; expected strip, found "
-                  "single, or bvh.treelets.bytes: 0"},
-        BadConfig{"TreeletsOfStrips", SCENE "bvh: {treelets: {bytes: 4096}, leaves: strips}\nengine: {kind: cycle}\n",
-                  "test.yaml:2:40: bvh.leaves: strips are not cut into treelets yet; expected triangles, or "
-                  "bvh.treelets.bytes: 0; found strips"},
-        BadConfig{"GroupedNodes", SCENE "collections: {grouped: true}\n",
-                  "test.yaml:2:24: collections.grouped: only rays at treelets of the whole tree are grouped; expected "
-                  "false, or bvh.treelets.bytes above 0 and packets; found true"},
-        BadConfig{"BlocksOfSpread", SCENE "collections: {key: block}\nengine: {kind: cycle}\n",
-                  "test.yaml:2:14: collections.traversal: a ray that is in several collections has no node of its own "
-                  "in a block; expected ordered, or collections.key: node; found spread"},
-        BadConfig{
-            "BlocksOfIndependent",
-            SCENE
-            "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\ntopology: {shape: independent}\n",
-            "test.yaml:2:40: collections.key: topology.shape: independent has no collections; expected node, found "
-            "block"},
-        BadConfig{"BlocksCarried",
-                  SCENE "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\npackets: {carry: "
-                        "data}\nmemory: {fetch: packet}\n",
-                  "test.yaml:4:18: packets.carry: blocks of memory are not carried; expected reference, or "
-                  "collections.key: node; found data"},
-        BadConfig{"BlocksInGroups",
-                  SCENE "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\nbvh: {levels: 3}\n",
-                  "test.yaml:4:15: bvh.levels: within groups of instances rays gather at nodes; expected 2, or "
-                  "collections.key: node; found 3"},
-        BadConfig{"BlocksInVectors",
-                  SCENE
-                  "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\ntesters: {simd: {lanes: 4}}\n",
-                  "test.yaml:4:25: testers.simd.lanes: the rays of a vector meet one shape at a time, and those of a "
-                  "block are at several nodes; expected 1, or collections.key: node; found 4"},
-        BadConfig{"BlocksInVectorsOfOne",
-                  SCENE
-                  "collections: {traversal: ordered, key: block}\nengine: {kind: cycle}\ntopology: {resources: 2, "
-                  "overrides: [{resource: 1, testers: {simd: {lanes: 4}}}]}\n",
-                  "test.yaml:4:76: topology.overrides.0.testers.simd.lanes: the rays of a vector meet one shape at a "
-                  "time, and those of a block are at several nodes; expected 1, or collections.key: node; found 4"},
         BadConfig{"HashReserve", SCENE "collections: {home: hash}\n",
                   "test.yaml:2:14: collections.when_full: home: hash can fill one resource with another's "
                   "collections and "
