@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::size_t kLongestLine = 4096;
 constexpr std::string_view kHeader = "carousel_trees 1";
-constexpr std::uint32_t kMostNodes = 1u << 30;
+// As many nodes as a NodeRef can name. Primitives, children and lines have numbers of 32 bits.
+constexpr std::uint32_t kMostNodes = 1u << 30, kMostOthers = 0xffffffffu;
 
 class TreeReader {
  public:
@@ -40,6 +41,7 @@ class TreeReader {
   /// Goes to the next line with a word on it.
   bool next() {
     while (in_.next()) {
+      require_room(line_, kMostOthers, "lines");
       ++line_;
       if (in_.too_long()) return false;
       rest_ = std::string_view(in_.line()).substr(0, in_.line().find('#'));
@@ -86,6 +88,11 @@ class TreeReader {
                      near ? fmt::format("; did you mean '{}'?", *near) : ""));
   }
 
+  /// There are `count` of `what` so far, and one more comes.
+  void require_room(std::size_t count, std::uint32_t most, std::string_view what) const {
+    if (count >= most) fail(fmt::format("expected at most {} {}, found more", most, what));
+  }
+
   void begin_tree(std::string_view kind) {
     if (!file_.trees.empty()) finish_node();
     FileTree tree;
@@ -107,7 +114,8 @@ class TreeReader {
     if (!tree.nodes.empty()) finish_node();
     const std::uint32_t index = count("the number of the node");
     end_line();
-    if (index != tree.nodes.size() || index >= kMostNodes)
+    require_room(tree.nodes.size(), kMostNodes, "nodes of a tree");
+    if (index != tree.nodes.size())
       fail(fmt::format("expected node {}, since nodes stand in the order of their numbers, found node {}",
                        tree.nodes.size(), index));
     tree.nodes.push_back({static_cast<std::uint32_t>(tree.children.size()), 0, line_});
@@ -128,10 +136,14 @@ class TreeReader {
         fail(fmt::format("expected a box of six finite numbers, least x y z and then greatest, found {} to {} along {}",
                          child.box.lo[axis], child.box.hi[axis], "xyz"[axis]));
     child.first = static_cast<std::uint32_t>(tree.primitives.size());
-    while (leaf && !rest_.empty()) tree.primitives.push_back(count("the number of a primitive"));
+    while (leaf && !rest_.empty()) {
+      require_room(tree.primitives.size(), kMostOthers, "primitives in the leaves of a tree");
+      tree.primitives.push_back(count("the number of a primitive"));
+    }
     child.count = static_cast<std::uint32_t>(tree.primitives.size()) - child.first;
     if (leaf && child.count == 0) fail("expected the numbers of a leaf's primitives behind its box");
     end_line();
+    require_room(tree.children.size(), kMostOthers, "children of the nodes of a tree");
     tree.children.push_back(child);
     ++tree.nodes.back().count;
   }
@@ -179,7 +191,9 @@ const FileTree& TreeFile::of(const TreeSource& source) const {
 }
 
 TreeFile read_trees(std::istream& in, const std::string& name) {
-  return TreeReader(in, name).run();
+  TreeFile out = TreeReader(in, name).run();
+  if (in.bad()) throw FileError("cannot read " + name);
+  return out;
 }
 
 TreeFile read_trees(const std::filesystem::path& path) {

@@ -10,8 +10,8 @@
 
 namespace carousel::accel {
 
-/// What a tree is over: a mesh of the scene, by its number; an instance whose transform has no inverse, so that its
-/// triangles are stored as they stand in the world; or the meshes that are merged (`bvh.merge`).
+/// This names what a tree is over: a mesh of the scene, by its number; an instance whose transform has no inverse, so
+/// that its triangles are stored as they stand in the world; or the meshes that are merged (`bvh.merge`).
 struct TreeSource {
   enum class Kind : std::uint8_t { kMesh, kInstance, kMerged } kind = Kind::kMesh;
   std::uint32_t index = 0;
@@ -53,8 +53,8 @@ struct TreeFile {
   const FileTree& of(const TreeSource& source) const;
 };
 
-/// Reads a file of trees. Throws a SceneError with the line of the first thing that is not as the format says, and
-/// FileError when the file cannot be read.
+/// Reads a file of trees. Throws a SceneError with the line of the first thing that is not as the format says, or that
+/// is more than a structure has room for, and FileError when the file cannot be read.
 TreeFile read_trees(const std::filesystem::path& path);
 TreeFile read_trees(std::istream& in, const std::string& name);
 
