@@ -28,6 +28,7 @@
 #include "app/trace/heat_map.h"
 #include "app/trace/memory_csv.h"
 #include "app/trace/trace_file.h"
+#include "core/config/own_sections.h"
 #include "core/config/write.h"
 #include "core/numeric/bytes_digest.h"
 #include "core/system/atomic_file.h"
@@ -127,6 +128,8 @@ std::string no_heat_because(const Prepared& p) {
   if (config.engine.kind != EngineKind::kCycle) return "is of the native engine; expected engine.kind: cycle";
   if (config.workload.kind != WorkloadConfig::Kind::kRays) return "makes no picture; expected workload: rays";
   if (config.bundles.size > 0) return "has bundles, whose rays have no packets of their own; expected bundles.size: 0";
+  if (most_of_resources(config, [](const OwnSections& one) { return one.testers.simt.warp; }) > 0)
+    return "has warps, which note no stages of a ray; expected testers.simt.warp: 0";
   if (config.faults.resource.kind == FaultsConfig::Resource::Kind::kStop)
     return "begins rays anew when a resource stops; expected another faults.resource.kind";
   if (config.rays.placement == Placement::kFirstTaker || config.rays.placement == Placement::kAddressed)

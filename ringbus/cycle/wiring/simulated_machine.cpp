@@ -88,8 +88,8 @@ std::vector<MemoryConfig> memory_of(const Config& config) {
   return out;
 }
 
-/// Rays in bundles have no packets of their own, rays that begin anew have two lives, and a lane of a warp waits for
-/// the others in each of its stages.
+/// Rays in bundles have no packets of their own, and rays that begin anew have two lives. Resources with warps note no
+/// stages: a ray there also waits for a warp, for other lanes and for its stack, and RayStage has no names for that.
 bool accounts_for_rays(const Config& config, const Observation& observed) {
   return observed.ray_times && config.bundles.size == 0 &&
          most_of_resources(config, [](const OwnSections& one) { return one.testers.simt.warp; }) == 0 &&

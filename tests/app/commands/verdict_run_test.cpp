@@ -81,8 +81,8 @@ TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
   EXPECT_FALSE(large["bottleneck"]["gains"].empty());
 }
 
-// Every line is read once from a slow memory, since the L2 holds the scene. Where tests limit the same frame, its first
-// reads do not matter.
+// Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are
+// read again and again, as in a frame of any size. Where tests limit the same frame, its first reads do not matter.
 TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
   const std::vector<std::string> frame{"engine.what_if=true", "image.width=64", "image.height=48",
                                        "memory.l2_kib=4096"};
@@ -95,6 +95,10 @@ TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
   EXPECT_EQ(cold["bottleneck"]["limits"], "");
   ASSERT_TRUE(cold["bottleneck"].contains("cold_caches")) << cold["bottleneck"].dump(1);
   EXPECT_EQ(cold["bottleneck"]["cold_caches"]["first"], cold["bottleneck"]["cold_caches"]["reads"]);
+  slow.emplace_back("memory.l2_kib=4");
+  const Json warm = run(kTerrain, slow)["bottleneck"];
+  EXPECT_FALSE(warm.contains("cold_caches")) << warm["cold_caches"].dump();
+  EXPECT_EQ(warm["limits"], "memory_bandwidth") << warm.dump(1);
   const Json tests = run(kTerrain, frame)["bottleneck"];
   EXPECT_FALSE(tests.contains("cold_caches")) << tests["cold_caches"].dump();
   EXPECT_EQ(tests["limits"], "triangle_tests") << tests.dump(1);

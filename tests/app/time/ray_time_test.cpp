@@ -132,10 +132,24 @@ TEST_F(RayTime, GrowsWhereThePartIsSlower) {
     EXPECT_GT(report(kMachine, {set})["ray_time"][stage].get<double>(), 1.3 * base[stage].get<double>()) << set;
 }
 
+// Camera rays are made when slots are free, so that those wait that other rays cause. How many these are depends on how
+// many are under way: with fewer slots the sum over all rays may be smaller. It is least where every ray has a slot.
+TEST_F(RayTime, ASlotIsWaitedForWhereThereIsNone) {
+  const Json few = report(kMachine)["ray_time"], enough = report(kMachine, {"rays.slots_per_resource=128"})["ray_time"],
+             many = report(kMachine, {"rays.slots_per_resource=1024"})["ray_time"];
+  EXPECT_EQ(enough, many);
+  EXPECT_GT(few["slot"].get<double>(), 10 * many["slot"].get<double>());
+  for (const Json& row : many["by_kind"])
+    if (row["kind"] == "camera") {
+      EXPECT_EQ(row["slot"], 0);
+    }
+}
+
 TEST_F(RayTime, IsAbsentWhereRaysAreNotKnownByThemselves) {
   EXPECT_FALSE(report(kMachine, {"bundles.size=4"}).contains("ray_time"));
   EXPECT_FALSE(report(kMachine, {"faults.resource.kind=stop", "faults.resource.after_rays=20"}).contains("ray_time"));
   EXPECT_FALSE(report(kMachine, {"engine.kind=native"}).contains("ray_time"));
+  EXPECT_FALSE(report(kMachine, {"topology.shape=independent", "testers.simt.warp=8"}).contains("ray_time"));
 }
 
 // The pixels share the rays' cycles out.
@@ -173,9 +187,12 @@ TEST_F(RayTime, OfThePixelsIsThatOfTheRays) {
 
 TEST_F(RayTime, MapsAreRefusedWherePixelsAreNotKnown) {
   program_.write("machine.yaml", kMachine);
-  for (const char* set : {"bundles.size=4", "engine.kind=native", "rays.placement=addressed"}) {
-    const Outcome outcome = program_.run({"run", "machine.yaml", "--set", "engine.kind=cycle", "--set", set, "--heat",
-                                          "linear", "--quiet", "--force", "--out", "none"});
+  for (const char* set : {"bundles.size=4", "engine.kind=native", "rays.placement=addressed", "testers.simt.warp=8"}) {
+    std::vector<std::string> words{"run",    "machine.yaml", "--set",   "engine.kind=cycle", "--set", set,
+                                   "--heat", "linear",       "--quiet", "--force",           "--out", "none"};
+    if (std::string(set).find("simt") != std::string::npos)
+      words.insert(words.end(), {"--set", "topology.shape=independent"});
+    const Outcome outcome = program_.run(words);
     EXPECT_EQ(outcome.status, 2) << set;
     EXPECT_NE(outcome.err.find("--heat"), std::string::npos) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(program_.folder() / "none")) << set;

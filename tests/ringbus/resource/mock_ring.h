@@ -30,7 +30,7 @@ struct MockRing {
       : config(c), accel(accel::build(scene, c.bvh, *make_sequential_executor())) {
     if (config.collections.when_full == WhenFull::kReserve)
       config.collections.capacity =
-          std::max(config.packets.rays, minimum_capacity(config, accel.width, accel.max_depth));
+          std::max(config.packets.rays, minimum_capacity(config, accel.most_ways(), accel.levels()));
     for (std::uint32_t r = 0; r < static_cast<std::uint32_t>(c.topology.resources); ++r) {
       stores.push_back(
           std::make_unique<RayStore>(ResourceId(r), static_cast<std::uint32_t>(c.rays.slots_per_resource)));

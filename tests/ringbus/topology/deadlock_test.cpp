@@ -34,7 +34,7 @@ TEST(CheckStorage, AsksForWhatDrainingNeeds) {
   const accel::Accel& accel = scene.accel(BvhConfig{});
   Config c;
   c.packets.rays = 8;
-  c.collections.capacity = minimum_capacity(c, accel.width, accel.max_depth);
+  c.collections.capacity = minimum_capacity(c, accel.most_ways(), accel.levels());
   EXPECT_TRUE(check_storage(c, accel).empty());
   --c.collections.capacity;
   const std::vector<ConfigIssue> issues = check_storage(c, accel);

@@ -155,7 +155,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
     plant.make(config);
     const accel::Accel& accel = scene.accel(config.bvh);
     if (config.collections.capacity == 0)  // as little as there may be
-      config.collections.capacity = minimum_capacity(config, accel.width, accel.max_depth);
+      config.collections.capacity = minimum_capacity(config, accel.most_ways(), accel.levels());
     const std::vector<WhatIf> all = what_ifs(config, accel);
     const auto what_if =
         std::find_if(all.begin(), all.end(), [&](const WhatIf& one) { return one.name() == plant.name; });

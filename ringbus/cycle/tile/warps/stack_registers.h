@@ -56,7 +56,9 @@ class StackRegisters {
   std::uint64_t refilled_bytes() const { return refilled_; }
 
  private:
-  /// More than a stack can have: 7 entries of 12 bytes a level.
+  /// More than the stack of a ray that goes depth first can have: 7 entries of 12 bytes a level. Where lanes help, a
+  /// ray goes down several ways at once. If its stack has more than this room, it shares addresses with that of the
+  /// next slot, which changes what a cache holds, and no hit.
   static constexpr std::uint64_t kRoom = 1 << 14;
 
   std::size_t first_of_refill(std::uint32_t slot) const {

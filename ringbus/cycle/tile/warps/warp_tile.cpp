@@ -33,7 +33,7 @@ WarpTile::WarpTile(ResourceId id, Machine& machine, const ShapeMemory& memory, c
       recording_(settings.recording) {
   for (std::size_t w = warps_.size(); w-- > 0;) free_warps_.push_back(static_cast<std::uint32_t>(w));
   if (recording_.slices != nullptr && recording_.ray == nullptr)
-    tester_.record(*recording_.slices, recording_.track + 1 + static_cast<std::uint32_t>(settings.testers.contexts));
+    tester_.record(*recording_.slices, recording_.track + 1 + recording_.contexts);
 }
 
 Cycle WarpTile::next() const {
