@@ -49,7 +49,8 @@ void describe(V& v, const Treelets& r) {
   v.field("smallest", r.smallest, "bytes", "size of the smallest");
   v.field("mean", ratio(r.bytes, r.count), "bytes", "mean size");
   v.field("largest", r.largest, "bytes", "size of the largest");
-  v.field("fill", ratio(r.bytes, r.count * r.limit), "fraction", "mean size over the limit; above 1 where nodes are larger");
+  v.field("fill", ratio(r.bytes, r.count * r.limit), "fraction",
+          "mean size over the limit; above 1 where nodes are larger");
   v.field("exits", ratio(r.exits, r.count), "treelets/treelet", "mean number of ways from a treelet into others");
   v.field("most_exits", r.most_exits, "treelets", "the largest such number");
   v.field("depth", r.depth, "treelets", "treelets on the longest way down, through all levels of the structure");

@@ -62,7 +62,8 @@ TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
   const Program program;
   for (const BadUsage& bad : std::vector<BadUsage>{
            {{},
-            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, versus, follow, report, serve, "
+            "error: expected a command: run, sweep, check, stress, accuracy, inspect, compare, versus, follow, report, "
+            "serve, "
             "schema, "
             "completion, man"},
            {{"rnu", "a.yaml"},
