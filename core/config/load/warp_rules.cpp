@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "core/config/config.h"
-
 namespace carousel::config {
 
 namespace {
