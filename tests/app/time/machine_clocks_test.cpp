@@ -104,7 +104,8 @@ TEST_F(MachineClocks, AWayTakesTheCyclesOfItsClocks) {
   const std::uint64_t latency = 100;
   const Json one = run(latency, "");
   std::vector<std::uint64_t> leaves;
-  for (const Json& slice : Json::parse(program_.read("trace.json"))["traceEvents"])
+  const Json trace = Json::parse(program_.read("trace.json"));
+  for (const Json& slice : trace["traceEvents"])
     if (slice["ph"] == "X" && slice["name"] == "packet") leaves.push_back(slice["ts"]);
   ASSERT_EQ(leaves.size(), 2u);
   ASSERT_EQ(one["links"].size(), 2u);
