@@ -15,8 +15,8 @@ inline std::uint32_t run_seed() {
   return seed != nullptr ? static_cast<std::uint32_t>(std::strtoull(seed, nullptr, 10)) : 1u;
 }
 
-/// CAROUSEL_EFFORT, by which numbers of random cases are multiplied: 1 unless it is set. script/test runs with 0.5,
-/// and with 0.2 under sanitizers, the soak with more than 1.
+/// CAROUSEL_EFFORT, by which numbers of random cases are multiplied: 1 unless it is set. script/test runs with 0.25,
+/// and with 0.1 under sanitizers, the soak with more than 1.
 inline double run_effort() {
   const char* effort = std::getenv("CAROUSEL_EFFORT");
   return effort != nullptr ? std::atof(effort) : 1.0;

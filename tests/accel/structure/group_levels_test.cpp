@@ -17,6 +17,7 @@
 #include "tests/accel/traverse/levels.h"
 #include "tests/accel/traverse/simd_guard.h"
 #include "tests/accel/traverse/test_rays.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::accel {
 namespace {
@@ -41,6 +42,11 @@ RayBatch far_rays(const scene::Scene& scene, std::size_t count, std::uint64_t se
   RayBatch rays = whole_rays(scene, count, seed);
   for (RayRequest& r : rays) r.ray.origin -= (factor - 1) * r.ray.direction;
   return rays;
+}
+
+/// Rays that all triangles are tried with, one by one.
+std::size_t few(int rays) {
+  return static_cast<std::size_t>(scaled(rays, 100));
 }
 
 void expect_equal(const scene::Scene& scene, const RayBatch& rays, const AccuracyConfig& accuracy = {}) {
@@ -104,7 +110,7 @@ TEST(GroupLevels, ShareTheNodesOfAGroup) {
 
 TEST(GroupLevels, ChangeNoHitAtAnyLevelOfAccuracy) {
   const scene::Scene scene = nested(5);
-  const RayBatch rays = mixed_rays(scene, 600, 31);
+  const RayBatch rays = mixed_rays(scene, few(600), 31);
   for (const auto& transform : kEnumNames<TransformLevel>) {
     AccuracyConfig accuracy;
     accuracy.transform = transform.value;
@@ -115,7 +121,7 @@ TEST(GroupLevels, ChangeNoHitAtAnyLevelOfAccuracy) {
 
 TEST(GroupLevels, ChangeNoHitInScenesOfAnyDepth) {
   for (const std::int64_t levels : {3, 4, 8})
-    expect_equal(nested(levels, 150), mixed_rays(nested(levels, 150), 500, 32));
+    expect_equal(nested(levels, 150), mixed_rays(nested(levels, 150), few(500), 32));
 }
 
 TEST(GroupLevels, ChangeNoHitOfRaysFromFarAway) {
@@ -124,7 +130,7 @@ TEST(GroupLevels, ChangeNoHitOfRaysFromFarAway) {
     for (const auto& transform : kEnumNames<TransformLevel>) {
       AccuracyConfig accuracy;
       accuracy.transform = transform.value;
-      expect_equal(scene, far_rays(scene, 400, 33, factor), accuracy);
+      expect_equal(scene, far_rays(scene, few(400), 33, factor), accuracy);
     }
 }
 
