@@ -18,15 +18,16 @@ std::int64_t checked_count(std::int64_t count, const char* key) {
 Scene make_builtin(const SceneConfig& config) {
   if (!config.builtin) throw ConfigError("scene.builtin", "no built-in scene is named");
   const auto triangles = [&] { return checked_count(config.triangles, "scene.triangles"); };
+  const float seconds = config.time.value_or(0);
   switch (*config.builtin) {
     case BuiltinScene::kCornell:
       return make_cornell();
     case BuiltinScene::kSpheres:
-      return make_spheres(triangles(), config.seed, config.procedural);
+      return make_spheres(triangles(), config.seed, config.procedural, seconds);
     case BuiltinScene::kTerrain:
-      return make_terrain(triangles(), config.seed);
+      return make_terrain(triangles(), config.seed, seconds);
     case BuiltinScene::kInstances:
-      return make_instances(checked_count(config.instances, "scene.instances"), config.seed, config.levels);
+      return make_instances(checked_count(config.instances, "scene.instances"), config.seed, config.levels, seconds);
     case BuiltinScene::kSliver:
       return make_sliver(triangles(), config.seed);
   }

@@ -8,18 +8,20 @@
 namespace carousel::scene {
 
 // Built-in scenes, generated without any file. Equal arguments give the same bits, on any number of
-// threads. Triangle and instance counts are aims, met as closely as the shapes allow, at least one.
+// threads. Triangle and instance counts are aims, met as closely as the shapes allow, at least one. `seconds` is the
+// moment at which a scene is shown that moves; it has the same meshes, triangles and instances at each.
 
 /// A closed Cornell box: coloured walls, a ceiling light, a brushed metal box, a white box with a metal ball.
 Scene make_cornell();
 /// Spheres of many colours, metals and roughnesses on a ground, about `triangles` of them in one mesh; or,
-/// `procedural`, the same spheres as such.
-Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural = false);
-/// A height field of fractal noise coloured by height and slope, one mesh of about `triangles`.
-Scene make_terrain(std::int64_t triangles, std::int64_t seed);
+/// `procedural`, the same spheres as such. Each goes round the middle of the field at a speed of its own.
+Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural = false, float seconds = 0);
+/// A height field of fractal noise coloured by height and slope, one mesh of about `triangles`. Waves go over it.
+Scene make_terrain(std::int64_t triangles, std::int64_t seed, float seconds = 0);
 /// `instances` placements of a few small meshes: rotated, scaled unequally, every fourth mirrored. With more than two
-/// `levels` they stand in groups of groups: 3 levels have one depth of groups.
-Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t levels = 2);
+/// `levels` they stand in groups of groups, which do not move: 3 levels have one depth of groups. Those in no group go
+/// round the middle, the inner ones faster, and turn as they go.
+Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t levels = 2, float seconds = 0);
 /// A burst of needles, `triangles` of them, length over width from 10 to 100,000.
 Scene make_sliver(std::int64_t triangles, std::int64_t seed);
 

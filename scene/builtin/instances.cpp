@@ -9,6 +9,7 @@
 #include "scene/builtin/mesh_shapes.h"
 #include "scene/builtin/nested_groups.h"
 #include "scene/builtin/random_rotation.h"
+#include "scene/builtin/turned.h"
 #include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
@@ -64,9 +65,21 @@ float scatter(Scene& scene, std::int64_t instances, std::int64_t seed, std::uint
   return disc;
 }
 
+/// Takes all instances round the middle, so that inner ones overtake outer ones.
+void go_round(Scene& scene, float seconds) {
+  if (seconds == 0) return;
+  for (Instance& instance : scene.instances) {
+    Affine& at = instance.world_from_model;
+    const float radius = std::sqrt(at.translation.x * at.translation.x + at.translation.z * at.translation.z);
+    const float angle = 2 * seconds / (1 + 0.5f * radius);
+    at.translation = turned(at.translation, angle);
+    for (int column = 0; column < 3; ++column) at.linear[column] = turned(at.linear[column], 2 * angle);
+  }
+}
+
 }  // namespace
 
-Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t levels) {
+Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t levels, float seconds) {
   Scene scene;
   scene.name = "instances";
   add_shapes(scene);
@@ -75,6 +88,7 @@ Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t lev
 
   const float disc =
       levels > 2 ? place_groups(scene, instances, seed, levels - 2, shapes) : scatter(scene, instances, seed, shapes);
+  if (levels <= 2) go_round(scene, seconds);
 
   Mesh ground;
   ground.name = "ground";

@@ -6,6 +6,7 @@
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
+#include "scene/builtin/turned.h"
 #include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
@@ -42,7 +43,7 @@ int level_for(std::int64_t triangles) {
 
 }  // namespace
 
-Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural) {
+Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural, float seconds) {
   Scene scene;
   scene.name = "spheres";
   Material ground_material;
@@ -67,7 +68,7 @@ Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural) {
 
   Mesh field;
   field.name = "spheres";
-  HashRandom random(static_cast<std::uint64_t>(seed), 1);
+  HashRandom random(static_cast<std::uint64_t>(seed), 1), speeds(static_cast<std::uint64_t>(seed), 3);
   for (std::int64_t i = 0; i < count; ++i) {
     // One cell a sphere; jitter and radius are bounded so that neighbours never meet.
     const float radius = random.uniform(0.16f, 0.36f) + (random.below(8) == 0 ? 0.1f : 0.0f);
@@ -75,10 +76,11 @@ Scene make_spheres(std::int64_t triangles, std::int64_t seed, bool procedural) {
     const float x = static_cast<float>(i % side) + 0.5f + random.uniform(-slack, slack) - half;
     const float z = static_cast<float>(i / side) + 0.5f + random.uniform(-slack, slack) - half;
     const MaterialId material(1 + random.below(static_cast<std::uint32_t>(scene.materials.size() - 1)));
+    const Vec3 centre = turned({x, radius, z}, seconds * speeds.uniform(-1.0f, 1.0f));
     if (procedural)
-      field.spheres.push_back({{x, radius, z}, radius, material});
+      field.spheres.push_back({centre, radius, material});
     else
-      add_icosphere(field, {x, radius, z}, radius, level, material);
+      add_icosphere(field, centre, radius, level, material);
   }
   scene.meshes.push_back(std::move(field));
 

@@ -74,9 +74,16 @@ Vec4 color_of(float height, float slope, float grain) {
   return Vec4(color * (1 + 0.15f * grain), 1);
 }
 
+/// How much a wave of about 10 units' length, which runs across the ground, has raised a point since 0.
+float wave(float x, float z, float seconds) {
+  if (seconds == 0) return 0;
+  const float phase = 0.6f * x + 0.35f * z;
+  return 0.5f * (std::sin(phase - 2 * seconds) - std::sin(phase));
+}
+
 }  // namespace
 
-Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
+Scene make_terrain(std::int64_t triangles, std::int64_t seed, float seconds) {
   Scene scene;
   scene.name = "terrain";
   Material material;
@@ -95,9 +102,13 @@ Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
   Mesh mesh;
   mesh.name = "terrain";
   mesh.positions.reserve(std::size_t{row} * row);
+  std::vector<float> still;  // heights without waves, which choose the colours
+  still.reserve(std::size_t{row} * row);
   for (std::uint32_t j = 0; j < row; ++j) {
     for (std::uint32_t i = 0; i < row; ++i) {
-      mesh.positions.push_back({place(i), height_at(noise, place(i), place(j), step), place(j)});
+      const float height = height_at(noise, place(i), place(j), step);
+      mesh.positions.push_back({place(i), height + wave(place(i), place(j), seconds), place(j)});
+      still.push_back(height);
     }
   }
   const auto height = [&](std::uint32_t i, std::uint32_t j) { return mesh.positions[std::size_t{j} * row + i].y; };
@@ -109,7 +120,8 @@ Scene make_terrain(std::int64_t triangles, std::int64_t seed) {
       const float dz = (height(i, j1) - height(i, j0)) / (step * static_cast<float>(j1 - j0));
       const Vec3 normal = glm::normalize(Vec3{-dx, 1, -dz});
       mesh.normals.push_back(normal);
-      mesh.colors.push_back(color_of(height(i, j), 1 - normal.y, noise(3.1f * place(i) + 40, 3.1f * place(j))));
+      mesh.colors.push_back(
+          color_of(still[std::size_t{j} * row + i], 1 - normal.y, noise(3.1f * place(i) + 40, 3.1f * place(j))));
     }
   }
   for (std::uint32_t j = 0; j < cells; ++j) {

@@ -20,6 +20,11 @@ inline constexpr auto kEnumNames<BuiltinScene> = [] {
                               {kSliver, "sliver"}});
 }();
 
+/// True for a generated scene that is another one at another time.
+constexpr bool moves(BuiltinScene scene) {
+  return scene == BuiltinScene::kSpheres || scene == BuiltinScene::kTerrain || scene == BuiltinScene::kInstances;
+}
+
 enum class ScenePlacement { kReplicated, kPartitioned };
 template <>
 inline constexpr auto kEnumNames<ScenePlacement> = [] {
@@ -48,7 +53,7 @@ struct SceneConfig {
   std::int64_t levels = 2;
   std::int64_t seed = 1;
   std::int64_t camera = 0;
-  std::optional<float> time;  ///< of all animations; absent, as `animation` is: the base pose
+  std::optional<float> time;  ///< of all animations; absent, as `animation` is: the base pose, or 0
   std::optional<AnimationConfig> animation;
   std::optional<SkyConfig> sky;
   ScenePlacement placement = ScenePlacement::kReplicated;
@@ -95,7 +100,8 @@ void describe(V& v, SceneConfig& c) {
   v.field_or_auto("time", c.time, kMoment, "seconds",
                   "The moment at which a file is shown that has animations, skins or morph targets. All animations "
                   "that move different nodes are played. With auto the file is shown in its base pose, in which "
-                  "animations, skins and morph targets are ignored.");
+                  "animations, skins and morph targets are ignored. The built-in spheres go round in circles, the "
+                  "terrain has waves, and the instances turn about the middle; auto is 0.");
   v.section("animation", c.animation,
             "The one animation that is played, in place of time. Skins and morph targets follow it.");
   v.section(
