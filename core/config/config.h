@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -52,6 +53,7 @@ struct Config {
   SceneConfig scene;
   CameraConfig camera;
   ImageConfig image;
+  std::optional<FramesConfig> frames;  ///< absent: one picture, of the moment that `scene` names
   EngineConfig engine;
   ClocksConfig clocks;
   TopologyConfig topology;
@@ -106,6 +108,7 @@ void describe(V& v, Config& c) {
   v.section("scene", c.scene, "The scene that is rendered.");
   v.section("camera", c.camera, "The place, the view and the lens of the camera.");
   v.section("image", c.image, "The picture and its paths.");
+  v.section("frames", c.frames, "A series of pictures of a scene that moves.");
   v.section("engine", c.engine, "The engine that simulates the machine.");
   v.section("clocks", c.clocks, "The clocks of the resources and of the network between them.");
   v.section("topology", c.topology, "The resources and their links.");

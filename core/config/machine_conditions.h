@@ -138,6 +138,14 @@ inline constexpr Condition kSceneCamera{[](const C& c, const S&) { return !c.cam
                                         "camera.eye takes its place"};
 inline constexpr Condition kLens{[](const C& c, const S&) { return c.camera.aperture > 0; }, "the camera is a pinhole"};
 
+inline constexpr Condition kLaterFrames{
+    [](const C& c, const S&) { return c.frames && c.frames->count + c.frames->first > 1; }, "there is frame 0 alone"};
+inline constexpr Condition kSeveralFrames{[](const C& c, const S&) { return c.frames && c.frames->count > 1; },
+                                          "there is one frame"};
+inline constexpr Condition kUpdates{
+    [](const C& c, const S&) { return c.frames && c.frames->count > 1 && c.frames->update != FrameUpdate::kNone; },
+    "the structure is built once"};
+
 inline constexpr Condition kPackets{[](const C& c, const S&) { return exchanges_packets(c); },
                                     "independent resources exchange no packets"};
 inline constexpr Condition kTravel{[](const C& c, const S&) { return packets_travel(c); }, "no packet crosses a link"};

@@ -60,6 +60,31 @@ inline constexpr auto kEnumNames<PictureFile> = [] {
                              {kIff, "iff"}});
 }();
 
+/// The unit that builds or refits the structure in the simulated machine.
+struct BuilderConfig {
+  std::int64_t bytes_per_cycle = 64;
+  std::int64_t boxes_per_cycle = 1;
+  std::int64_t requests = 64;
+  std::int64_t local_primitives = 1024;
+};
+
+/// How the structure follows a scene that moves.
+enum class FrameUpdate : std::uint8_t { kRefit, kRebuild, kNone };
+template <>
+inline constexpr auto kEnumNames<FrameUpdate> = [] {
+  using enum FrameUpdate;
+  return names<FrameUpdate>({{kRefit, "refit"}, {kRebuild, "rebuild"}, {kNone, "none"}});
+}();
+
+/// A series of pictures of a scene that moves.
+struct FramesConfig {
+  std::int64_t count = 1;
+  std::int64_t first = 0;
+  double step = 0.04;
+  FrameUpdate update = FrameUpdate::kRefit;
+  BuilderConfig builder;
+};
+
 namespace config {
 
 template <class V>
@@ -76,6 +101,33 @@ void describe(V& v, ImageConfig& c) {
   v.choices("files", c.files,
             "The pictures that a run writes: image.png, image.exr and so on. All but png and exr need the module "
             "pictures (docs/how-it-works/modules.md). The page of a run shows image.png.");
+}
+
+template <class V>
+void describe(V& v, BuilderConfig& c) {
+  v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 4096}, "bytes/cycle",
+          "The bytes that the builder reads and writes in a cycle.");
+  v.field("boxes_per_cycle", c.boxes_per_cycle, IntRange{1, 1024}, "boxes/cycle",
+          "The boxes that it adds to others, or sorts into bins, in a cycle.");
+  v.field("requests", c.requests, IntRange{1, 65536}, "lines", "The lines that it can wait for at a time.");
+  v.field("local_primitives", c.local_primitives, IntRange{1, 1 << 24}, "primitives",
+          "A subtree of at most so many primitives is built in a store of its own, from one reading of them.");
+}
+
+template <class V>
+void describe(V& v, FramesConfig& c) {
+  v.field("count", c.count, IntRange{1, 10000}, "frames",
+          "The number of pictures, one after another. Shared caches stay warm from one to the next.");
+  v.field("first", c.first, IntRange{0, 1'000'000}, "frames",
+          "The number of the first picture. The structure is built for it before the run.");
+  v.field(
+      "step", c.step, RealRange{0, 1e6}, "seconds",
+      "The time between pictures. Frame 0 shows the moment of scene.time or of scene.animation.time; a built-in scene "
+      "without one begins at 0.");
+  v.choice("update", c.update,
+           "For each further picture the structure keeps its nodes and gets new boxes, or is built anew, or stays as "
+           "it is; then nothing but the camera may move.");
+  v.section("builder", c.builder, "The unit that does this in the simulated machine, before the rays of a picture.");
 }
 
 }  // namespace config

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/config/load/bound_rules.h"
+#include "core/config/load/frame_rules.h"
 #include "core/config/load/memory_rules.h"
 #include "core/config/load/network_rules.h"
 #include "core/config/load/rank_rules.h"
@@ -33,6 +34,7 @@ class Rules {
       issue(key, std::move(message));
     };
     config::check_memory(c, breach);
+    config::check_frames(c, breach);
     camera_has_a_view();
     raster_needs_a_pinhole();
     all_is_built();
@@ -85,8 +87,13 @@ class Rules {
             fmt::format("only the built-in scene of instances has a depth to choose; expected 2, found {}",
                         c.scene.levels));
     const char* const moment = c.scene.animation ? "scene.animation" : "scene.time";
-    if (c.scene.builtin && (c.scene.animation || c.scene.time))
-      issue(moment, "a built-in scene does not move; expected a scene.file beside this key");
+    if (c.scene.builtin && (c.scene.animation || (c.scene.time && !moves(*c.scene.builtin))))
+      issue(moment,
+            c.scene.animation
+                ? "a built-in scene has no animations; expected scene.time, or a scene.file beside this key"
+                : fmt::format("a built-in scene does not move unless it is spheres, terrain or instances; expected one "
+                              "of these, or a scene.file beside this key; found {}",
+                              enum_name(*c.scene.builtin)));
     if (c.scene.animation && c.scene.time)
       issue("scene.time", "scene.animation has a time of its own; expected one of the two, found both");
     if (c.scene.animation && c.scene.animation->name.empty())
