@@ -1,0 +1,249 @@
+#include "ringbus/cycle/builder/builder_work.h"
+
+#include <algorithm>
+#include <bit>
+#include <unordered_map>
+
+namespace carousel::ringbus::cycle {
+
+namespace {
+
+using accel::NodeRef;
+
+constexpr std::uint32_t kPositionBytes = 36;  // three vertices
+constexpr std::uint32_t kMatrixBytes = 48;
+constexpr std::uint32_t kRecordBytes = 32;  // a box and a number, at a border of 32 bytes
+constexpr std::uint64_t kChunk = 64;        // primitives of a task that streams
+constexpr std::uint64_t kCorners = 8;       // of an instance's box, which are brought into the world
+
+/// Where the builder finds what it reads beside the structure.
+class Sources {
+ public:
+  Sources(const accel::Accel& accel, const ShapeMemory& memory) {
+    std::uint64_t primitives = 0;
+    for (const accel::InstanceNode& instance : accel.instances)
+      if (instance.triangles > 0 && first_.emplace(instance.root.bits(), primitives).second)
+        primitives += instance.triangles;
+    constexpr std::uint64_t kPage = 4096;
+    const auto behind = [](std::uint64_t at, std::uint64_t bytes) { return (at + bytes + kPage - 1) / kPage * kPage; };
+    positions_ = behind(memory.size_bytes(), 0);
+    matrices_ = behind(positions_, primitives * kPositionBytes);
+    records_ = behind(matrices_, accel.instances.size() * kMatrixBytes);
+    top_records_ = records_ + primitives * kRecordBytes;
+  }
+
+  /// Number of the first primitive of the mesh below a root among all of them.
+  std::uint64_t first(NodeRef root) const { return first_.at(root.bits()); }
+  ShapeSpan positions(std::uint64_t primitive, std::uint64_t count = 1) const {
+    return {positions_ + primitive * kPositionBytes, static_cast<std::uint32_t>(count * kPositionBytes)};
+  }
+  ShapeSpan matrix(std::uint32_t instance) const {
+    return {matrices_ + instance * std::uint64_t{kMatrixBytes}, kMatrixBytes};
+  }
+  ShapeSpan records(std::uint64_t first, std::uint64_t count, bool top) const {
+    return {(top ? top_records_ : records_) + first * kRecordBytes, static_cast<std::uint32_t>(count * kRecordBytes)};
+  }
+
+ private:
+  std::unordered_map<std::uint32_t, std::uint64_t> first_;
+  std::uint64_t positions_, matrices_, records_, top_records_;
+};
+
+class Planner {
+ public:
+  Planner(const accel::Accel& accel, const ShapeMemory& memory, std::uint64_t local = 0)
+      : accel_(accel), memory_(memory), sources_(accel, memory), local_(local) {}
+
+  BuilderWork refit(const accel::ChangedParts& parts) {
+    std::unordered_map<std::uint32_t, std::size_t> heights;  // by the bits of a mesh's root
+    for (const NodeRef root : parts.meshes) heights[root.bits()] = refit_mesh(root, sources_.first(root));
+    move_instances(parts, 0);
+    if (parts.top) refit_top(heights);
+    return std::move(work_);
+  }
+
+  BuilderWork rebuild(const accel::ChangedParts& parts) {
+    std::size_t end = 0;
+    for (const NodeRef root : parts.meshes) end = std::max(end, rebuild_mesh(root));
+    move_instances(parts, end);
+    if (parts.top) rebuild_top(end);
+    return std::move(work_);
+  }
+
+ private:
+  ShapeSpan span(NodeRef ref) const { return memory_.strip({kNoInstance, ref}); }
+
+  template <class Visit>
+  void each_primitive(NodeRef leaf, const Visit& visit) const {
+    for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
+      visit(accel_.blocks[leaf.first_block() + i / accel::kBlockTriangles].primitive[i % accel::kBlockTriangles] &
+            accel::kPrimitiveMask);
+  }
+
+  /// The stored transforms; a level that has no other work of these instances.
+  void move_instances(const accel::ChangedParts& parts, std::size_t level) {
+    for (const std::uint32_t i : parts.instances)
+      if (const ShapeSpan record = memory_.transform(i); record.bytes > 0)
+        work_.level(level).push_back({{sources_.matrix(i)}, {record}, 0, true});
+  }
+
+  /// Returns the level at which the root is written.
+  std::size_t refit_mesh(NodeRef ref, std::uint64_t first) {
+    BuilderTask task{{span(ref)}, {span(ref)}, 0, false};
+    if (!ref.is_inner()) {
+      each_primitive(ref,
+                     [&](std::uint32_t primitive) { task.reads.push_back(sources_.positions(first + primitive)); });
+      task.boxes = ref.triangles();
+      work_.level(0).push_back(std::move(task));
+      return 0;
+    }
+    const accel::Node& node = accel_.nodes[ref.node()];
+    std::size_t level = 0;
+    for (int lane = 0; lane < node.count; ++lane) {
+      level = std::max(level, refit_mesh(node.child[lane], first) + 1);
+      task.reads.push_back(span(node.child[lane]));
+    }
+    task.boxes = node.count;
+    work_.level(level).push_back(std::move(task));
+    return level;
+  }
+
+  void refit_top(const std::unordered_map<std::uint32_t, std::size_t>& meshes) {
+    std::unordered_map<std::uint32_t, std::size_t> level_of;  // by node
+    for (std::uint32_t i = static_cast<std::uint32_t>(accel_.nodes.size()); i-- > 0;) {
+      const accel::Node& node = accel_.nodes[i];
+      if (!node.above_instances) continue;
+      BuilderTask task{{span(NodeRef::inner(i))}, {span(NodeRef::inner(i))}, node.count, true};
+      std::size_t level = 0;
+      for (int lane = 0; lane < node.count; ++lane) {
+        const NodeRef child = node.child[lane];
+        if (child.is_instance()) {
+          const NodeRef root = accel_.instances[child.instance_index()].root;
+          task.reads.insert(task.reads.end(), {sources_.matrix(child.instance_index()), span(root)});
+          task.boxes += kCorners;
+          if (const auto mesh = meshes.find(root.bits()); mesh != meshes.end())
+            level = std::max(level, mesh->second + 1);
+        } else {
+          task.reads.push_back(span(child));
+          level = std::max(level, level_of.at(child.node()) + 1);
+        }
+      }
+      level_of[i] = level;
+      work_.level(level).push_back(std::move(task));
+    }
+  }
+
+  /// Returns the first level behind it.
+  std::size_t rebuild_mesh(NodeRef root) {
+    first_ = sources_.first(root);
+    top_ = false;
+    const std::uint64_t count = below(root);
+    for (std::uint64_t i = 0; i < count; i += kChunk) {
+      const std::uint64_t some = std::min(kChunk, count - i);
+      work_.level(0).push_back({{sources_.positions(first_ + i, some)}, {records(i, some)}, some, false});
+    }
+    return divide(root, 0, 1);
+  }
+
+  void rebuild_top(std::size_t level) {
+    first_ = 0;
+    top_ = true;
+    std::uint64_t record = 0;
+    for (const accel::Node& node : accel_.nodes)
+      for (int lane = 0; node.above_instances && lane < node.count; ++lane) {
+        if (!node.child[lane].is_instance()) continue;
+        const std::uint32_t instance = node.child[lane].instance_index();
+        work_.level(level).push_back({{sources_.matrix(instance), span(accel_.instances[instance].root)},
+                                      {records(record++, 1)},
+                                      kCorners,
+                                      true});
+      }
+    for (std::uint32_t i = 0; i < accel_.nodes.size(); ++i) {
+      if (!accel_.nodes[i].above_instances) continue;
+      divide(NodeRef::inner(i), 0, level + 1);  // the first one is the root of the level
+      break;
+    }
+  }
+
+  std::uint64_t below(NodeRef ref) const {
+    if (ref.is_instance()) return 1;
+    if (!ref.is_inner()) return ref.triangles();
+    const accel::Node& node = accel_.nodes[ref.node()];
+    if (!top_) return node.triangles;
+    std::uint64_t sum = 0;
+    for (int lane = 0; lane < node.count; ++lane) sum += below(node.child[lane]);
+    return sum;
+  }
+  ShapeSpan records(std::uint64_t first, std::uint64_t count) const {
+    return sources_.records(first_ + first, count, top_);
+  }
+
+  /// The subtree whose records begin with number `begin` of its structure. Returns the first level behind it.
+  std::size_t divide(NodeRef ref, std::uint64_t begin, std::size_t level) {
+    if (ref.is_instance()) return level;
+    const std::uint64_t count = below(ref);
+    if (!ref.is_inner() || count <= local_) {
+      BuilderTask task{{records(begin, count)}, {}, count * std::bit_width(count), top_};
+      add_subtree(ref, task);
+      work_.level(level).push_back(std::move(task));
+      return level + 1;
+    }
+    const accel::Node& node = accel_.nodes[ref.node()];
+    for (int halvings = std::bit_width(static_cast<unsigned>(node.count) - 1); halvings > 0; --halvings, level += 2)
+      for (std::uint64_t i = 0; i < count; i += kChunk) {
+        const std::uint64_t some = std::min(kChunk, count - i);
+        work_.level(level).push_back({{records(begin + i, some)}, {}, some, top_});
+        work_.level(level + 1).push_back({{records(begin + i, some)}, {records(begin + i, some)}, some, top_});
+      }
+    work_.level(level).push_back({{}, {span(ref)}, node.count, top_});
+    std::size_t end = level + 1;
+    for (int lane = 0; lane < node.count; ++lane) {
+      end = std::max(end, divide(node.child[lane], begin, level));
+      begin += below(node.child[lane]);
+    }
+    return end;
+  }
+
+  void add_subtree(NodeRef ref, BuilderTask& task) const {
+    if (ref.is_instance()) return;
+    task.writes.push_back(span(ref));
+    if (!ref.is_inner())
+      return each_primitive(ref, [&](std::uint32_t p) { task.reads.push_back(sources_.positions(first_ + p)); });
+    const accel::Node& node = accel_.nodes[ref.node()];
+    for (int lane = 0; lane < node.count; ++lane) add_subtree(node.child[lane], task);
+  }
+
+  const accel::Accel& accel_;
+  const ShapeMemory& memory_;
+  Sources sources_;
+  std::uint64_t local_;
+  BuilderWork work_;
+  std::uint64_t first_ = 0;  // primitive of the mesh that is rebuilt
+  bool top_ = false;         // the top level is
+};
+
+}  // namespace
+
+accel::ChangedParts all_parts(const accel::Accel& accel) {
+  accel::ChangedParts out;
+  std::unordered_map<std::uint32_t, bool> found;
+  for (std::uint32_t i = 0; i < accel.instances.size(); ++i) {
+    const accel::InstanceNode& instance = accel.instances[i];
+    if (instance.triangles == 0) continue;
+    out.instances.push_back(i);
+    if (found.emplace(instance.root.bits(), true).second) out.meshes.push_back(instance.root);
+  }
+  out.top = !out.instances.empty();
+  return out;
+}
+
+BuilderWork refit_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts) {
+  return Planner(accel, memory).refit(parts);
+}
+
+BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
+                         std::uint64_t local_primitives) {
+  return Planner(accel, memory, local_primitives).rebuild(parts);
+}
+
+}  // namespace carousel::ringbus::cycle

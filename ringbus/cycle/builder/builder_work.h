@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/builders/refit.h"
+#include "accel/structure/accel.h"
+#include "ringbus/cycle/shapes/shape_memory.h"
+
+namespace carousel::ringbus::cycle {
+
+/// A piece of the builder's work: when all is there that it reads, its boxes are put together, and then it writes.
+struct BuilderTask {
+  std::vector<ShapeSpan> reads{}, writes{};
+  std::uint64_t boxes = 0;
+  bool top = false;  ///< of the top level, not of a mesh
+};
+
+/// Tasks by level: those of one level need all of the levels before it, and nothing of one another.
+struct BuilderWork {
+  std::vector<std::vector<BuilderTask>> levels;
+
+  std::vector<BuilderTask>& level(std::size_t number) {
+    if (levels.size() <= number) levels.resize(number + 1);
+    return levels[number];
+  }
+};
+
+/// All parts of a structure, for one that is built anew as a whole.
+accel::ChangedParts all_parts(const accel::Accel& accel);
+
+/// A refit, from the leaves up. A leaf reads itself, for the numbers of its primitives, and their positions, 36 bytes
+/// each in a list behind the structure. A node reads itself, for its references, and its children, whose boxes it adds
+/// up. In the top level it reads the matrix of each instance, 48 bytes, and the root of its mesh. What is read is
+/// written back. Unused keys of `memory` have their defaults.
+BuilderWork refit_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts);
+
+/// A build of the structure as it is, from the top down, by sorting primitives into bins (I. Wald, On fast construction
+/// of SAH-based bounding volume hierarchies, 2007), whose outcome is the structure that `bvh` asks for. A primitive's
+/// record of 32 bytes (box and number) is written once. Each halving of a node reads the records below it twice, for
+/// the bins and to part them, and writes them once; a node of n children takes log2 n halvings, rounded up. A subtree
+/// of at most `local_primitives` reads its records once, and the positions of its primitives, and is written as a
+/// whole.
+BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
+                         std::uint64_t local_primitives);
+
+}  // namespace carousel::ringbus::cycle
