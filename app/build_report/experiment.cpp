@@ -63,7 +63,7 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
-                            ringbus::MemoryLog* memory, std::span<ringbus::PixelCost> heat) {
+                            ringbus::MemoryLog* memory, std::span<ringbus::PixelCost> heat, SeriesFrame* frame) {
   log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
@@ -75,6 +75,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.memory = memory;
   options.ray_times = true;
   options.heat = heat;
+  if (frame != nullptr) options.warm = {&frame->cached, 1};
   options.transport = job.ranks();
   if (job.ranks() != nullptr) {
     options.samples = 0;  // their clocks differ
@@ -84,6 +85,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
   phase.result(run_text(p.config(), result));
+  if (frame != nullptr && result.cycle) frame->cached = result.cycle->cached_lines;
   return result;
 }
 
@@ -138,7 +140,7 @@ report::Report play_requests(const Prepared& p, const InterruptScope& interrupt)
 
 report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, RenderJob& job,
                         const InterruptScope& interrupt, bool quiet, TraceFile* trace, ringbus::MemoryLog* memory,
-                        std::span<ringbus::PixelCost> heat) {
+                        std::span<ringbus::PixelCost> heat, SeriesFrame* frame) {
   std::optional<accel::HitOracle> oracle;
   std::optional<accel::VerifyingWorkload> verifying;
   if (p.config().verify == Verify::kReference) {
@@ -157,7 +159,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     if (memory == nullptr) memory = &requests;
   }
   const ringbus::RunResult result =
-      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, heat);
+      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, heat, frame);
   if (job.ranks() != nullptr) {
     share_signal(*job.ranks());
     job.join();
@@ -179,7 +181,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     add_sampled_energy(report, p.config());
   }
   if (result.cycle) foretell_effects(p, job, report);
-  if (result.cycle) find_limits(p, job, result, interrupt, quiet, report);
+  if (result.cycle && (frame == nullptr || frame->last)) find_limits(p, job, result, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);
   judge_forecast(report);

@@ -15,6 +15,7 @@
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
 #include "app/commands/run_outputs.h"
+#include "app/frames/frame_series.h"
 #include "app/host/interrupt.h"
 #include "app/host/log.h"
 #include "app/host/output.h"
@@ -76,12 +77,10 @@ void write_report(const std::filesystem::path& folder, const RunArguments& argum
   write_file(folder / "report.json", report::json_text(report::sealed(json)) + "\n");
 }
 
-/// A workload without rays has no hits that could be written.
-void require_no_hits(const RunArguments& arguments, std::string_view workload) {
+/// Refuses to write down the rays of a run: `instead` says why, and what is expected.
+void require_no_hits(const RunArguments& arguments, const std::string& instead) {
   const auto refuse = [&](bool wanted, const char* option) {
-    if (wanted)
-      throw ConfigError(
-          {{{}, option, std::string(workload) + " no rays; expected workload: rays, or a run without this option"}});
+    if (wanted) throw ConfigError({{{}, option, instead + ", or a run without this option"}});
   };
   refuse(arguments.hits, "--hits");
   refuse(!arguments.dump_rays.empty(), "--dump-rays");
@@ -95,10 +94,31 @@ void require_no_hits(const RunArguments& arguments, std::string_view workload) {
 int run_without_rays_command(const RunArguments& arguments, const Prepared& p, const InterruptScope& interrupt,
                              RunOutputs& outputs) {
   const bool traffic = p.config().workload.kind == WorkloadConfig::Kind::kTraffic;
-  require_no_hits(arguments, traffic ? "synthetic traffic has" : "memory requests have");
+  require_no_hits(arguments, fmt::format("{} no rays; expected workload: rays",
+                                         traffic ? "synthetic traffic has" : "memory requests have"));
   const report::Report report = run_without_rays(p, interrupt, arguments.quiet);
   return finish(arguments, report, traffic ? report::traffic_table(report) : report::memory_table(report), outputs,
                 interrupt, [&](const std::filesystem::path& folder) {
+                  write_file(folder / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
+                  write_report(folder, arguments, report);
+                });
+}
+
+/// Runs a series of frames, whose pictures are written as they are made.
+int run_series_command(const RunArguments& arguments, Prepared& p, const InterruptScope& interrupt,
+                       RunOutputs& outputs) {
+  require_no_hits(
+      arguments,
+      fmt::format("a series shows {} frames, and this is of one; expected frames.count: 1, with frames.first",
+                  p.config().frames->count));
+  const std::filesystem::path& staging = outputs.folder().staging();
+  const report::Report report =
+      run_series(arguments, p, interrupt, arguments.quiet, [&](const RenderJob& job, std::int64_t frame, bool last) {
+        job.write_images(staging, frame);
+        if (last) job.write_images(staging);
+      });
+  return finish(arguments, report, report::report_table(report), outputs, interrupt,
+                [&](const std::filesystem::path& folder) {
                   write_file(folder / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
                   write_report(folder, arguments, report);
                 });
@@ -201,8 +221,8 @@ int run_command(const RunArguments& arguments) {
   const bool keep_hits = arguments.hits || !arguments.dump_rays.empty();
   std::optional<RunOutputs> outputs;
   std::optional<RankScope> ranks;
-  const Prepared p = prepare(
-      arguments, {.force = arguments.force, .ranks = true}, keep_hits,
+  Prepared p = prepare(
+      arguments, {.force = arguments.force, .ranks = true, .frames = true}, keep_hits,
       [&](const Prepared& of) {
         require_modules(of.config().engine, of.config().workload, of.config().image);
         if (const Config& config = of.config(); config.engine.transport != EngineTransport::kLocal) {
@@ -224,6 +244,7 @@ int run_command(const RunArguments& arguments) {
   if (!p.has_rays()) return run_without_rays_command(arguments, p, interrupt, *outputs);
   require_memory(arguments, p.config());
   require_estimates(arguments, p.config());
+  if (p.config().frames && p.config().frames->count > 1) return run_series_command(arguments, p, interrupt, *outputs);
   if (outputs)
     if (ExtraFile* const file = outputs->trees())
       file->write([&](AtomicFile& to) { accel::write_trees(to, p.accel, p.scene); });

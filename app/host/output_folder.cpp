@@ -40,9 +40,14 @@ std::string_view result_of(Results results) {
   return kFiles[static_cast<std::size_t>(results)].front();
 }
 
+/// Also one of a series, with its number of four digits or more.
 bool is_picture(std::string_view name) {
   constexpr std::string_view kStem = "image.";
-  return name.starts_with(kStem) && enum_value<PictureFile>(name.substr(kStem.size()));
+  if (!name.starts_with(kStem)) return false;
+  name.remove_prefix(kStem.size());
+  const std::size_t digits = std::min(name.find_first_not_of("0123456789"), name.size());
+  if (digits >= 4 && name.substr(digits).starts_with('.')) name.remove_prefix(digits + 1);
+  return enum_value<PictureFile>(name).has_value();
 }
 
 bool is_file_of(Results results, std::string_view name) {

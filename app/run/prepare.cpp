@@ -28,6 +28,7 @@
 #include "ringbus/protocol/deadlock.h"
 #include "ringbus/results/run_features.h"
 #include "scene/model/instance_overlap.h"
+#include "scene/moment.h"
 #include "shading/effects/effects_plan.h"
 
 namespace carousel::app {
@@ -78,12 +79,13 @@ std::string scene_text(const scene::Scene& s) {
   return out;
 }
 
-void load_scene(Prepared& p) {
+void load_scene(Prepared& p, const SceneConfig& config) {
   std::optional<Phase> phase(std::in_place, "scene");
   double seconds = 0;
   p.scene = scene::load_scene(
-      p.config().scene, p.config_folder,
+      config, p.config_folder,
       [&](const std::string& warning) {
+        if (std::find(p.warnings.begin(), p.warnings.end(), warning) != p.warnings.end()) return;
         spdlog::warn("{}", warning);
         p.warnings.push_back(warning);
       },
@@ -168,10 +170,7 @@ void build_accel(Prepared& p, ringbus::Transport* transport) {
         "build: {} instances with singular transforms are stored as triangles of the world, rays of {} nearly "
         "singular ones are transformed in double",
         p.accel.baked_instances, p.accel.promoted_instances);
-  if (p.accel.has_non_opaque) {
-    p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
-    p.accel.any_hit = p.alpha_test.get();
-  }
+  renew_any_hit(p);
   {
     std::optional<Phase> phase;
     if (p.config().cull_planes.count > 0) phase.emplace("cull planes");
@@ -216,6 +215,14 @@ void require_one_rank(const Prepared& p) {
     throw ConfigError({{p.located.positions.find("engine.transport"), "engine.transport",
                         fmt::format("ranks play carousel run only; expected local, found {}",
                                     enum_name(p.config().engine.transport))}});
+}
+
+/// Refuses a series of frames where a command shows one.
+void require_one_frame(const Prepared& p) {
+  if (p.config().frames && p.config().frames->count > 1)
+    throw ConfigError(
+        {{p.located.positions.find("frames.count"), "frames.count",
+          fmt::format("a series is for carousel run only; expected 1, found {}", p.config().frames->count)}});
 }
 
 /// From here on the process gets no more memory than the configuration says, which has to be more than it has.
@@ -268,7 +275,7 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
   if (!p.has_rays()) return;
   require_fit(estimate_before_scene(p.config(), keep_hits), usable_memory_bytes(), positions);
   with_positions(positions, [&] {
-    load_scene(p);
+    load_scene(p, scene::first_moment(p.config().scene, p.config().frames));
     foretell(p);
     build_accel(p, transport);
   });
@@ -278,6 +285,25 @@ void prepare_located(Prepared& p, bool keep_hits, ringbus::Transport* transport 
 }
 
 }  // namespace
+
+scene::Scene load_moment(Prepared& p, float seconds) {
+  scene::Scene before = std::move(p.scene);
+  with_positions(p.located.positions, [&] { load_scene(p, scene::at_moment(p.config().scene, seconds)); });
+  std::swap(before, p.scene);
+  return before;
+}
+
+void rebuild(Prepared& p) {
+  with_positions(p.located.positions, [&] { build_accel(p, nullptr); });
+  adapt_storage(p);
+  require_room(p, false);
+}
+
+void renew_any_hit(Prepared& p) {
+  p.alpha_test.reset();
+  if (p.accel.has_non_opaque) p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
+  p.accel.any_hit = p.alpha_test.get();
+}
 
 scene::View view_of(const Config& config) {
   return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};
@@ -319,6 +345,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   p.located =
       arguments.charge_all ? load_charged(text, arguments.sets, options) : load_config(text, arguments.sets, options);
   if (!options.ranks) require_one_rank(p);
+  if (!options.frames) require_one_frame(p);
   if (!options.force) require_flow(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
   const bool is_fitted = p.config().area.budget_mm2.has_value();
@@ -336,6 +363,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
 void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
   require_one_rank(p);
+  require_one_frame(p);
   limit_memory(p);
   if (!p.has_rays()) return;
   set_query(p);
@@ -347,6 +375,7 @@ Prepared prepare_config(const std::string& text, const std::string& name, const 
   Prepared p;
   p.located = load_config({text, name}, sets, {.force = true});
   require_one_rank(p);
+  require_one_frame(p);
   prepare_located(p, false);
   return p;
 }

@@ -68,6 +68,16 @@ Prepared prepare_config(const std::string& text, const std::string& name, const 
 /// exceeds its area, that does not fit the structure, or that the host's memory does not hold. Throws a ConfigError.
 void set_machine(Prepared& prepared, LocatedConfig located);
 
+/// The scene of a moment, as prepare() loads it for a configuration with that moment. Warnings that are new go to the
+/// log.
+scene::Scene load_moment(Prepared& prepared, float seconds);
+
+/// Gives a prepared scene, whose content has been replaced by that of another moment, a structure that is built anew.
+void rebuild(Prepared& prepared);
+
+/// Lets the structure, which fits the scene, answer any-hit calls of it as it now is.
+void renew_any_hit(Prepared& prepared);
+
 /// The view of the configured picture.
 scene::View view_of(const Config& config);
 

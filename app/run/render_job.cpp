@@ -210,11 +210,12 @@ std::optional<RasterCounts> RenderJob::raster() const {
   return raster_seconds_ ? std::optional(first_hits_.counts) : std::nullopt;
 }
 
-void RenderJob::write_images(const std::filesystem::path& folder) const {
+void RenderJob::write_images(const std::filesystem::path& folder, std::optional<std::int64_t> frame) const {
   if (!tracer_) return;
   const std::vector<float> rgb = tracer_->linear_rgb();
+  const std::string stem = frame ? fmt::format("image.{:04}", *frame) : "image";
   for (const PictureFile format : files_)
-    shading::write_picture(folder / fmt::format("image.{}", enum_name(format)), format, tracer_->width(),
+    shading::write_picture(folder / fmt::format("{}.{}", stem, enum_name(format)), format, tracer_->width(),
                            tracer_->height(), rgb, exposure_);
 }
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -77,8 +78,9 @@ class RenderJob {
   /// Counts and time of the rasteriser; absent if rays found the first hits.
   std::optional<RasterCounts> raster() const;
   std::optional<double> raster_seconds() const { return raster_seconds_; }
-  /// Writes the files of image.files if there is a picture. Pixels that `sampling` has not drawn are black.
-  void write_images(const std::filesystem::path& folder) const;
+  /// Writes the files of image.files if there is a picture. Pixels that `sampling` has not drawn are black. Those of a
+  /// frame of a series have its number in their names, as image.0007.png has.
+  void write_images(const std::filesystem::path& folder, std::optional<std::int64_t> frame = std::nullopt) const;
 
  private:
   void draw_sample(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits);

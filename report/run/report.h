@@ -26,6 +26,7 @@
 #include "report/sections/scene_summary.h"
 #include "report/sections/shading.h"
 #include "report/sections/structure/cull_planes.h"
+#include "report/sections/structure/frames.h"
 #include "report/sections/structure/levels.h"
 #include "report/sections/structure/nodes.h"
 #include "report/sections/structure/structure.h"
@@ -57,6 +58,7 @@ struct Report {
   std::optional<Sampled> sampled;
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
+  std::optional<Frames> frames;
   std::optional<Nodes> nodes;
   std::optional<Structure> structure;
   std::optional<Levels> levels;
@@ -116,6 +118,7 @@ void describe(V& v, const Report& r) {
       "that was simulated");
   v.section("throughput", r.throughput, "work for each ray; rates by the wall clock stand in host");
   v.section("tests", r.tests, "tests and other work of testing rays");
+  v.section("frames", r.frames, "each picture of a series, of which all other sections show the last");
   v.section("nodes", r.nodes, "nodes of the structure by depth; absent where single rays go down without packets");
   v.section("structure", r.structure, "structures over meshes, when there are rays");
   v.section("levels", r.levels, "instances of instances, when the structure has more than two levels");

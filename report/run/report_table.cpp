@@ -271,6 +271,15 @@ std::string ring_text(const nlohmann::ordered_json& config) {
   return fmt::format(": {} resources, {}", topology->value("resources", 0), topology->value("shape", ""));
 }
 
+void frame_lines(Table& table, const Frames& frames) {
+  table.line("frames", "{} frames   {} rays in all   below is the last of them", grouped(frames.count),
+             grouped(frames.rays));
+  if (!frames.cycles) return;
+  table.line("builder", "{} of {} cycles   {} moved   it limits {} frames   a rebuild pays in {} frames",
+             grouped(*frames.builder_cycles), grouped(*frames.cycles), bytes_text(*frames.builder_bytes),
+             grouped(*frames.limited_by_builder), grouped(*frames.worn));
+}
+
 void level_lines(Table& table, const std::vector<StructureLevel>& levels) {
   std::string_view name = "structure";
   for (const StructureLevel& level : levels) {
@@ -304,6 +313,7 @@ std::string report_table(const Report& report) {
   table.line("engine", "{}{}{}, {} shader workers", report.engine.kind, ring_text(report.config),
              simulated ? "" : fmt::format(" on {} threads", report.host.threads), report.shading.workers);
   if (report.sampled) table.text(sampled_table(*report.sampled));
+  if (report.frames) frame_lines(table, *report.frames);
   table.gap();
   const Rays& rays = report.rays;
   const std::optional<Stop> stop = report.faults ? report.faults->stop : std::nullopt;

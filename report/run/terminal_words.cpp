@@ -54,6 +54,18 @@ void machine_words(Words& w) {
             "the machine: its compute resources, the shape of its network, and its shader workers");
 }
 
+void frame_words(Words& w) {
+  w.line("frames")
+      .item("N frames", "frames.count")
+      .item("N rays in all", "frames.rays")
+      .item("below is the last of them", "frames.rows", "all other lines are about the last frame");
+  w.line("builder")
+      .item("N of N cycles", "frames.builder_cycles", "time of the builder, and that of all frames with it")
+      .item("N moved", "frames.builder_bytes")
+      .item("it limits N frames", "frames.limited_by_builder")
+      .item("a rebuild pays in N frames", "frames.worn");
+}
+
 void ray_words(Words& w) {
   w.line("rays")
       .item("N emitted", "rays.emitted")
@@ -346,6 +358,7 @@ std::vector<TerminalWord> words_of_traffic() {
 std::vector<TerminalWord> terminal_words() {
   Words w(false);
   machine_words(w);
+  frame_words(w);
   ray_words(w);
   cycle_words(w);
   energy_words(w);

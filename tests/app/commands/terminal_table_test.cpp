@@ -121,6 +121,7 @@ TEST_F(TerminalTable, IsExplainedForSpecialParts) {
   EXPECT_TRUE(explained(base + "cull_planes: {count: 2}\nprimary: raster\n").contains("cull planes"));
   EXPECT_TRUE(explained(base + "verify: effects\n").contains("all effects"));
   EXPECT_TRUE(explained(base + "verify: reference\nfaults: {links: {drop: 0.05}, compare: true}\n").contains("faults"));
+  EXPECT_TRUE(explained(base + "frames: {count: 2}\n").contains("builder"));
   explained(std::string(kSmall) + "engine: {kind: cycle}\nfaults: {resource: {kind: stop, after_rays: 20}}\n");
   EXPECT_TRUE(explained("scene: {builtin: instances, instances: 30}\nimage: {width: 12, height: 8, samples: 1}\n" +
                         std::string(kCycle) + "topology: {shape: central, form: distributor, resources: 1}\n")

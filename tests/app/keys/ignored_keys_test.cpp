@@ -26,7 +26,8 @@ class IgnoredKeys : public KeyRuns {
  protected:
   std::vector<std::string> ignored(BaseMachine machine, const std::vector<std::string>& sets) {
     std::vector<std::string> out;
-    for (const IgnoredKey& one : app::prepare(arguments(machine, sets), {.force = true}, false).ignored())
+    for (const IgnoredKey& one :
+         app::prepare(arguments(machine, sets), {.force = true, .frames = true}, false).ignored())
       out.push_back(one.key);
     return out;
   }

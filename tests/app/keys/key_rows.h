@@ -40,6 +40,13 @@ inline std::vector<KeyRow> key_rows() {
       {"image.max_depth", kTerrain, {}, {"1"}},
       {"image.seed", kTerrain, {}, {"2"}},
       {"image.exposure", kTerrain, {}, {"-3"}},
+      {"frames.count", kTerrain, {"frames.count=2"}, {"3"}},
+      {"frames.first", kTerrain, {"frames.count=1"}, {"5"}},
+      {"frames.step", kTerrain, {"frames.count=2"}, {"1"}},
+      {"frames.builder.bytes_per_cycle", kTerrain, {"frames.count=2"}, {"1"}},
+      {"frames.builder.boxes_per_cycle", kTerrain, {"frames.count=2"}, {"1024"}},
+      {"frames.builder.requests", kTerrain, {"frames.count=2"}, {"1"}},
+      {"frames.builder.local_primitives", kTerrain, {"frames={count: 2, update: rebuild}"}, {"1"}},
       {"engine.kind", kTerrain},
       {"engine.threads", kNative, {}, {"2"}},
       {"engine.clock_mhz", kTerrain, {}, {"500"}},
@@ -373,6 +380,7 @@ inline std::vector<std::string> keys_without_a_row() {
   return {
       "schema_version",         // it has one value
       "image.files",            // it chooses files, which no report tells of; modules_run_test.cpp has it
+      "frames.update",          // with none nothing may move, and all are one; frames_run_test.cpp has it
       "vary",                   // it is for sweeps; `run` warns of it
       "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
       "engine.plugins",         // these four take shared libraries; plugins_run_test.cpp has them

@@ -1,0 +1,185 @@
+#include "app/frames/frame_series.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <fmt/format.h>
+#include <spdlog/spdlog.h>
+
+#include "accel/builders/refit.h"
+#include "app/build_report/experiment.h"
+#include "app/frames/frame_builder.h"
+#include "app/frames/wear.h"
+#include "core/config/write.h"
+#include "core/system/error.h"
+#include "core/system/executor.h"
+#include "report/text/number_text.h"
+#include "ringbus/cycle/builder/builder_work.h"
+#include "ringbus/cycle/messages/memory_messages.h"
+#include "scene/moment.h"
+
+namespace carousel::app {
+
+namespace {
+
+class FrameSeries {
+ public:
+  FrameSeries(const ConfigArguments& arguments, Prepared& prepared, const InterruptScope& interrupt, bool quiet,
+              const TakeFrame& take)
+      : arguments_(arguments),
+        p_(prepared),
+        series_(*prepared.config().frames),
+        interrupt_(interrupt),
+        quiet_(quiet),
+        take_(take) {}
+
+  report::Report run() {
+    report::Report report;
+    std::optional<report::Verify> verified;
+    for (std::int64_t i = 0; i < series_.count && !report.incomplete; ++i) {
+      report::Frame row = bring_to(series_.first + i);
+      RenderJob job(p_);
+      frame_.last = i + 1 == series_.count;
+      report = run_rays(arguments_, p_, job, interrupt_, quiet_, nullptr, nullptr, {}, &frame_);
+      report.incomplete |= !updated_;
+      if (report.verify) add(verified, *report.verify);
+      fill(row, report);
+      count(row);
+      take_(job, series_.first + i, frame_.last || report.incomplete);
+    }
+    report.verify = verified;
+    if (report.frames = std::move(rows_); cycle()) sum_cycles(*report.frames);
+    return report;
+  }
+
+ private:
+  bool cycle() const { return p_.config().engine.kind == EngineKind::kCycle; }
+
+  /// Brings scene and structure to the moment of a frame.
+  report::Frame bring_to(std::int64_t number) {
+    report::Frame row;
+    row.frame = static_cast<std::uint64_t>(number);
+    const float moment = scene::moment_of_frame(p_.config().scene, series_, number);
+    row.time = shortest(moment);
+    row.update = "built";
+    if (number > series_.first) move_to(moment, row);
+    row.surface_cost = accel::surface_cost(p_.accel);
+    return row;
+  }
+
+  void move_to(float moment, report::Frame& row) {
+    scene::Scene after = load_moment(p_, moment);
+    const accel::SceneChange change = accel::change_of(p_.scene, after);
+    if (series_.update == FrameUpdate::kNone && !change.none()) refuse_motion(change, after, row);
+    row.update = "kept";
+    row.why = series_.update == FrameUpdate::kRefit && !change.none()
+                  ? accel::refit(p_.accel, after, change, *make_executor(p_.threads))
+                  : "";
+    p_.scene = std::move(after);
+    if (change.none()) {  // the camera or a light may have moved
+      renew_any_hit(p_);
+      return;
+    }
+    const bool refitted = series_.update == FrameUpdate::kRefit && row.why.empty();
+    row.update = refitted ? "refit" : "rebuild";
+    if (refitted)
+      renew_any_hit(p_);
+    else
+      rebuild(p_);
+    rebuilt_.reset();
+    if (refitted) rebuilt_ = rebuild_beside(p_, row);
+    if (!cycle()) return;
+    const BuilderFrame builder =
+        build_in_machine(p_, parts_of(p_.accel, change), refitted, interrupt_.token(), frame_.cached);
+    updated_ = builder.complete;
+    row.builder = builder.cost;
+    if (refitted) row.rebuild_cycles = rebuild_cycles(p_, *rebuilt_, parts_of(*rebuilt_, change), interrupt_.token());
+  }
+
+  /// What the builder has to do. A structure with flattened instances has moved as a whole.
+  accel::ChangedParts parts_of(const accel::Accel& accel, const accel::SceneChange& change) const {
+    return change.other.empty() && accel.baked_instances == 0 ? accel::changed_parts(accel, p_.scene, change)
+                                                              : ringbus::cycle::all_parts(accel);
+  }
+
+  [[noreturn]] void refuse_motion(const accel::SceneChange& change, const scene::Scene& after,
+                                  const report::Frame& row) const {
+    std::string what = change.other;
+    if (what.empty() && !change.meshes.empty())
+      what = fmt::format("mesh {} ('{}') has another shape", change.meshes.front(),
+                         after.meshes[change.meshes.front()].name);
+    if (what.empty()) what = fmt::format("instance {} stands elsewhere", change.instances.front());
+    throw ConfigError({{p_.located.positions.find("frames.update"), "frames.update",
+                        fmt::format("in frame {}, at {} s, {}, and the structure stays as it was built; expected refit "
+                                    "or rebuild, found none",
+                                    row.frame, row.time, what)}});
+  }
+
+  static void add(std::optional<report::Verify>& sum, const report::Verify& one) {
+    if (!sum) {
+      sum = one;
+      return;
+    }
+    sum->compared += one.compared;
+    sum->mismatches += one.mismatches;
+    if (sum->example.empty()) sum->example = one.example;
+  }
+
+  void fill(report::Frame& row, const report::Report& report) const {
+    row.cycles = report.engine.cycles;
+    row.rays = report.rays.completed;
+    if (report.tests) {
+      row.box_tests = report.tests->counts.box;
+      row.primitive_tests = report.tests->counts.triangle + report.tests->counts.procedural;
+    }
+    if (report.memory)
+      row.memory_bytes = (report.memory->counts.lines + report.memory->counts.lines_written) *
+                         ringbus::cycle::fetched_bytes(p_.config().memory);
+    if (report.energy) row.joules = report.energy->joules;
+    row.digest = report.digest;
+    if (row.rebuild_cycles && !report.incomplete) judge_wear(p_, *rebuilt_, interrupt_.token(), row);
+  }
+
+  void count(report::Frame& row) {
+    ++rows_.count;
+    rows_.rays += row.rays;
+    if (!quiet_)
+      spdlog::info("frame {} at {} s: {}, {} rays{}", row.frame, row.time, row.update, report::grouped(row.rays),
+                   row.cycles ? fmt::format(", {} cycles", report::grouped(*row.cycles)) : "");
+    rows_.rows.push_back(std::move(row));
+  }
+
+  static void sum_cycles(report::Frames& frames) {
+    frames.cycles = frames.builder_cycles = frames.builder_bytes = frames.limited_by_builder = frames.worn = 0;
+    for (const report::Frame& row : frames.rows) {
+      *frames.cycles += row.cycles.value_or(0);
+      *frames.worn += row.rebuild_pays.value_or(false);
+      if (!row.builder) continue;
+      *frames.cycles += row.builder->cycles;
+      *frames.builder_cycles += row.builder->cycles;
+      *frames.builder_bytes += row.builder->bytes_read + row.builder->bytes_written;
+      *frames.limited_by_builder += row.builder->cycles > row.cycles.value_or(0);
+    }
+  }
+
+  const ConfigArguments& arguments_;
+  Prepared& p_;
+  const FramesConfig series_;
+  const InterruptScope& interrupt_;
+  bool quiet_;
+  const TakeFrame& take_;
+  SeriesFrame frame_;
+  std::optional<accel::Accel> rebuilt_;  // of a refitted frame
+  bool updated_ = true;                  // the builder's work of the frame was not interrupted
+  report::Frames rows_;
+};
+
+}  // namespace
+
+report::Report run_series(const ConfigArguments& arguments, Prepared& prepared, const InterruptScope& interrupt,
+                          bool quiet, const TakeFrame& take) {
+  return FrameSeries(arguments, prepared, interrupt, quiet, take).run();
+}
+
+}  // namespace carousel::app

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "report/sections/verify.h"
+#include "report/sections/visitor.h"
+
+namespace carousel::report {
+
+/// What bringing the structure to a frame cost the simulated machine.
+struct FrameUpdateCost {
+  std::uint64_t cycles = 0;
+  std::uint64_t levels = 0, boxes = 0;
+  std::uint64_t bytes_read = 0, bytes_written = 0, top_bytes = 0;
+  std::uint64_t lines_dropped = 0;
+  std::optional<double> joules{};
+};
+
+template <class V>
+void describe(V& v, const FrameUpdateCost& r) {
+  v.field("cycles", r.cycles, "cycles", "time of the builder, before the first ray of the frame");
+  v.field("levels", r.levels, "", "steps of its work of which each waits for all writes of the one before");
+  v.field("boxes", r.boxes, "boxes", "boxes that it added to others, or sorted into bins");
+  v.field("bytes_read", r.bytes_read, "bytes", "bytes of lines that it read from the memory");
+  v.field("bytes_written", r.bytes_written, "bytes", "bytes of lines that it wrote to the memory");
+  v.field("top_bytes", r.top_bytes, "bytes", "part of both that is the top level's; the rest is that of meshes");
+  v.field("lines_dropped", r.lines_dropped, "lines", "lines of shared caches that it made out of date");
+  v.field("joules", r.joules, "J", "energy of its bytes of the memory and of its boxes, with energy.profile");
+}
+
+/// A picture of the series.
+struct Frame {
+  std::uint64_t frame = 0;
+  double time = 0;
+  std::string update{}, why{};
+  std::optional<std::uint64_t> cycles{};
+  std::uint64_t rays = 0, box_tests = 0, primitive_tests = 0;
+  std::optional<std::uint64_t> memory_bytes{};
+  std::optional<double> joules{};
+  double surface_cost = 0;
+  std::optional<double> surface_cost_rebuilt{};
+  std::optional<std::uint64_t> depth_first_tests{}, depth_first_tests_rebuilt{};
+  std::optional<FrameUpdateCost> builder{};
+  std::optional<std::uint64_t> rebuild_cycles{}, cycles_rebuilt{};
+  std::optional<bool> rebuild_pays{};
+  Digest digest{};
+};
+
+template <class V>
+void describe(V& v, const Frame& r) {
+  v.field("frame", r.frame, "", "number of the frame");
+  v.field("time", r.time, "s", "moment that it shows; scene.time with this value shows it by itself");
+  v.field("update", r.update, "",
+          "how the structure came to be that of the frame: built before the run, refit, rebuild, or kept");
+  v.field("why", r.why, "", "why it was rebuilt although frames.update is refit; empty if it was not");
+  v.field("cycles", r.cycles, "cycles", "time of its rays, without the update before them (cycle)");
+  v.field("rays", r.rays, "rays", "rays of the frame");
+  v.field("box_tests", r.box_tests, "tests", "tests of a ray against a box");
+  v.field("primitive_tests", r.primitive_tests, "tests", "tests of a ray against a triangle or sphere");
+  v.field("memory_bytes", r.memory_bytes, "bytes", "bytes that its rays read from the memory and wrote to it (cycle)");
+  v.field("joules", r.joules, "J", "energy of its rays, with energy.profile");
+  v.field("surface_cost", r.surface_cost, "nodes",
+          "nodes and blocks that a line through the scene's box meets on average, the top level with them");
+  v.field("surface_cost_rebuilt", r.surface_cost_rebuilt, "nodes",
+          "that of a structure that is built for the frame, where this one was refitted");
+  v.field("depth_first_tests", r.depth_first_tests, "tests",
+          "tests of boxes and primitives of the frame's rays, each traced by itself, depth first, in the refitted "
+          "structure");
+  v.field("depth_first_tests_rebuilt", r.depth_first_tests_rebuilt, "tests",
+          "those in a structure that is built for the frame");
+  v.section("builder", r.builder, "cost of the update (cycle)");
+  v.field("rebuild_cycles", r.rebuild_cycles, "cycles",
+          "time in which the builder would have rebuilt what it refitted (cycle)");
+  v.field("cycles_rebuilt", r.cycles_rebuilt, "cycles",
+          "time of the frame's rays in a rebuilt structure, which no cache holds yet; looked at where they might spare "
+          "more than the rebuild costs, if their time went down as their tests do (cycle)");
+  v.field("rebuild_pays", r.rebuild_pays, "",
+          "true if the refitted tree is so worn that rebuild_cycles and cycles_rebuilt are less than the refit and its "
+          "rays (cycle)");
+  v.section("digest", r.digest, "digests of the frame");
+}
+
+/// A series of frames. All other sections are those of its last frame.
+struct Frames {
+  std::uint64_t count = 0;
+  std::optional<std::uint64_t> cycles{}, builder_cycles{}, builder_bytes{};
+  std::uint64_t rays = 0;
+  std::optional<std::uint64_t> limited_by_builder{}, worn{};
+  std::vector<Frame> rows{};
+};
+
+template <class V>
+void describe(V& v, const Frames& r) {
+  v.field("count", r.count, "frames", "frames that were shown");
+  v.field("cycles", r.cycles, "cycles", "time of all of them, rays and updates (cycle)");
+  v.field("builder_cycles", r.builder_cycles, "cycles", "part of it that is the builder's (cycle)");
+  v.field("builder_bytes", r.builder_bytes, "bytes", "bytes that the builder read and wrote (cycle)");
+  v.field("rays", r.rays, "rays", "rays of all frames");
+  v.field("limited_by_builder", r.limited_by_builder, "frames",
+          "frames whose update took longer than their rays (cycle)");
+  v.field("worn", r.worn, "frames", "frames with rebuild_pays (cycle)");
+  v.section("rows", r.rows, "each frame");
+}
+
+}  // namespace carousel::report
