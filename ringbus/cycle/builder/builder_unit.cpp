@@ -52,11 +52,11 @@ void BuilderUnit::step(Cycle now) {
   now_ = now;
   while (answers_.next() <= now) take_answer(answers_.take());
   for (; !computed_.empty() && computed_.front().at <= now; computed_.pop_front()) {
-    const BuilderTask& done_task = task(computed_.front().task);
-    for (const std::uint64_t line : lines_of(done_task.writes)) to_write_.push_back(line | kWriteLine);
-    const std::size_t lines = lines_of(done_task.writes).size();
-    use_.lines_written += lines;
-    if (done_task.top) use_.top_lines += lines;
+    const BuilderTask& computed = task(computed_.front().task);
+    const std::vector<std::uint64_t> lines = lines_of(computed.writes);
+    for (const std::uint64_t line : lines) to_write_.push_back(line | kWriteLine);
+    use_.lines_written += lines.size();
+    if (computed.top) use_.top_lines += lines.size();
     ++written_tasks_;
   }
   while (may_send() && port_ / port_rate_ <= now) {

@@ -45,9 +45,6 @@ class BuilderUnit final : public Agent {
   const BuilderUse& use() const { return use_; }
 
  private:
-  struct Open {
-    std::size_t task = 0, lines = 0;  // lines that it waits for
-  };
   struct Computed {
     Cycle at = 0;
     std::size_t task = 0;
