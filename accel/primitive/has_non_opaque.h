@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "accel/exact/exact_triangle.h"
 #include "accel/primitive/local_ray.h"
+#include "accel/primitive/nearest_ray.h"
 #include "accel/structure/accel.h"
 
 namespace carousel::accel {
@@ -22,15 +24,32 @@ template <class Slab>
   return accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v);
 }
 
-/// Reports a hit of a ray that looks for all of them: true, and it does not stop there. `counted` if an any-hit call
-/// has been counted for it, which may report it as well.
+/// Reports a hit of a ray that looks for all of them, or offers it to the buffer of one that looks for several: true,
+/// and it does not stop there. `counted` if an any-hit call has been counted for it, which may report it as well.
 template <class Slab>
 [[gnu::noinline]] bool reported(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found, bool counted) {
+  if (NearestRay* const nearest = nearest_of(*ray.record)) {
+    ray.counts->buffer_steps += nearest->insert(found);
+    return true;
+  }
   if ((ray.record->tag.flags & kRayAll) == 0 || accel.all_hits == nullptr) return false;
   ray.counts->any_hit_calls += !counted;
   accel.all_hits->add(ray.record->tag.path, found);
   return true;
 }
+
+/// Tells a ray that looks for several hits of one that lies at `t` in `box`, or behind its end (NearestRay).
+template <class Slab>
+[[gnu::noinline]] void note_stray(NearestRay& nearest, const LocalRay<Slab>& ray, const Aabb& box, float t,
+                                  float entry) {
+  Slab from_hit = ray.slab;
+  from_hit.tmin = std::max({t, entry, ray.instance_entry});
+  float at;
+  if (!slab(from_hit, box, kInfinity, at)) nearest.stray();
+}
+
+/// The flags of rays with which a triangle that is met may be no closest hit after all, and triangle_accepts() decides.
+inline constexpr std::uint32_t kFlagsThatDecide = kRayCullBack | kRayCullFront | kRayAll | kRayNearest;
 
 /// any_hit_accepts() and reported() for a triangle, given in the local space, that may be non-opaque or may show a
 /// culled side. glTF flips the winding of instances that mirror, so the front is the same side as in model space.

@@ -22,6 +22,9 @@ template <class Slab>
   if (!cross_sphere(ray.origin, ray.direction, centre, radius, crossing)) return false;
   float entry;
   if (!slab(ray.slab, sphere_box(centre, radius), hit.t, entry)) return false;
+  if (NearestRay* const nearest = nearest_of(*ray.record); nearest != nullptr && nearest->fears_strays())
+    for (const double t : crossing.t)
+      note_stray(*nearest, ray, sphere_box(centre, radius), static_cast<float>(t), entry);
   const std::uint32_t primitive = block.primitive[lane] & kPrimitiveMask;
   const bool calls_any_hit = (block.primitive[lane] & kNonOpaqueBit) != 0;
   constexpr std::uint8_t kCulledBy[2] = {kRayCullFront, kRayCullBack};

@@ -51,7 +51,7 @@ HWY_INLINE bool lower(const Accel& accel, const TriangleBlock& block, std::size_
   }
   if (!closer(found.t, found.instance, found.primitive, hit)) return false;
   const std::uint32_t calls_any_hit = block.primitive[l] & kNonOpaqueBit;
-  if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & (kRayCullBack | kRayCullFront | kRayAll))) != 0) &&
+  if (HWY_UNLIKELY((calls_any_hit | (ray.record->tag.flags & kFlagsThatDecide)) != 0) &&
       !triangle_accepts(accel, calls_any_hit != 0, corners(block, l), ray, found))
     return false;
   hit = found;
@@ -64,12 +64,28 @@ HWY_INLINE bool in_range(float t, const LocalRay<Slab>& ray, float farthest) {
   return t >= ray.slab.tmin && t <= std::numeric_limits<float>::max() && t <= farthest;
 }
 
+/// Tells a ray that looks for several hits of those among the crossings that lie behind the ends of their boxes.
+/// `distance(l)` is that of a crossing.
+template <class T, class Slab, class Distance>
+HWY_INLINE void note_strays(const TriangleBlock& block, const Crossings<T>& crossings, const OwnBoxes<Slab>& boxes,
+                            const LocalRay<Slab>& ray, const Distance& distance) {
+  NearestRay* const nearest = nearest_of(*ray.record);
+  if (HWY_LIKELY(nearest == nullptr) || !nearest->fears_strays()) return;
+  for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
+    const auto l = static_cast<std::size_t>(std::countr_zero(inside));
+    float entry;
+    if (!boxes.enters(l, kInfinity, entry)) continue;
+    note_stray(*nearest, ray, box_of(corners(block, l)), distance(l), entry);
+  }
+}
+
 /// lower() for all triangles of `block` that are crossed. True when the hit changed.
 template <class T, class Slab>
 HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, const Crossings<T>& crossings,
                                const LocalRay<Slab>& ray, Hit& hit) {
   if (crossings.inside == 0) return false;
   const OwnBoxes<Slab> boxes(ray.slab, block);
+  note_strays(block, crossings, boxes, ray, [&](std::size_t l) { return static_cast<float>(crossings.t[l]); });
   bool changed = false;
   for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
     const auto l = static_cast<std::size_t>(std::countr_zero(inside));
@@ -91,6 +107,10 @@ HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlo
                                            const Crossings<float>& crossings, const LocalRay<Slab>& ray, Hit& hit) {
   const OwnBoxes<Slab> boxes(ray.slab, block);
   const PreciseCrossings precise(ray.triangle.watertight, block);
+  note_strays(block, crossings, boxes, ray, [&](std::size_t l) {
+    Hit found;
+    return precise.get(l, found) ? found.t : crossings.t[l];
+  });
   bool changed = false;
   for (std::uint32_t inside = crossings.inside; inside != 0; inside &= inside - 1) {
     const auto l = static_cast<std::size_t>(std::countr_zero(inside));

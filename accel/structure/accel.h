@@ -18,6 +18,7 @@
 #include "core/types/aabb.h"
 #include "core/types/any_hit.h"
 #include "core/types/hit_sink.h"
+#include "core/types/nearest_sink.h"
 
 namespace carousel::accel {
 
@@ -55,15 +56,16 @@ struct Accel {
   std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
   std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`
   std::shared_ptr<const TreePieces> pieces;    ///< null: the tree is not cut (`bvh.treelets`)
-  const AnyHit* any_hit = nullptr;     ///< answers any-hit calls, set before tracing; null: every surface is opaque
-  HitSink* all_hits = nullptr;         ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
-  AccuracyConfig accuracy;             ///< arithmetic of the tests on it
-  bool procedural_primitives = false;  ///< there are some
-  bool has_non_opaque = false;         ///< some primitives have kNonOpaqueBit
-  int width = kMaxWidth;               ///< children a node at most
-  int max_depth = 0;                   ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
-  std::size_t baked_instances = 0;     ///< singular transforms, stored as world-space triangles
-  std::size_t promoted_instances = 0;  ///< nearly singular ones, whose rays are transformed in double
+  const AnyHit* any_hit = nullptr;  ///< answers any-hit calls, set before tracing; null: every surface is opaque
+  HitSink* all_hits = nullptr;      ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
+  NearestSink* nearest_hits = nullptr;  ///< takes the hits of rays that look for several, set before tracing; or null
+  AccuracyConfig accuracy;              ///< arithmetic of the tests on it
+  bool procedural_primitives = false;   ///< there are some
+  bool has_non_opaque = false;          ///< some primitives have kNonOpaqueBit
+  int width = kMaxWidth;                ///< children a node at most
+  int max_depth = 0;                    ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
+  std::size_t baked_instances = 0;      ///< singular transforms, stored as world-space triangles
+  std::size_t promoted_instances = 0;   ///< nearly singular ones, whose rays are transformed in double
 
   /// A hit that is reported costs a call.
   bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }

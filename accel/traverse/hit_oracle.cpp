@@ -1,5 +1,8 @@
 #include "accel/traverse/hit_oracle.h"
 
+#include <algorithm>
+#include <tuple>
+
 #include "accel/traverse/ray_check.h"
 
 namespace carousel::accel {
@@ -58,6 +61,42 @@ bool HitOracle::trace_instance(const RayRequest& request, std::uint32_t instance
         return !over;
       });
   return over;
+}
+
+std::vector<Hit> HitOracle::nearest(const RayRequest& request, std::size_t k) const {
+  std::vector<Hit> best;
+  if (!valid(request.ray)) return best;
+  float bound = request.ray.tmax;
+  const OracleBoxTest boxes(request.ray, box_);
+  const auto enters = [&](const Aabb& box, float& entry) { return boxes.enters(box, bound, entry); };
+  instances_->walk(enters, [&](std::uint32_t i) {
+    float entry;
+    if (enters(primitives_.world_box(i), entry)) nearest_in_instance(request, i, entry, k, bound, best);
+    return true;
+  });
+  return best;
+}
+
+void HitOracle::nearest_in_instance(const RayRequest& request, std::uint32_t instance, float entry, std::size_t k,
+                                    float& bound, std::vector<Hit>& best) const {
+  const auto before = [](const Hit& a, const Hit& b) {
+    return std::tie(a.t, a.instance, a.primitive, a.u, a.v) < std::tie(b.t, b.instance, b.primitive, b.u, b.v);
+  };
+  const OraclePrimitives::LocalRay ray = primitives_.local_ray(request.ray, instance, entry);
+  meshes_[tree_of_[instance]].walk(
+      [&](const Aabb& box, float& at) { return ray.boxes.enters(box, bound, at); },
+      [&](std::uint32_t primitive) {
+        OraclePrimitives::Candidates found;
+        const int count = primitives_.cross(ray, primitive, bound, found);
+        for (int i = 0; i < count; ++i) {
+          const OraclePrimitives::Candidate& candidate = found[static_cast<std::size_t>(i)];
+          if (candidate.hit.t > bound || !primitives_.accepts(request, candidate)) continue;
+          best.insert(std::upper_bound(best.begin(), best.end(), candidate.hit, before), candidate.hit);
+          if (best.size() > k) best.pop_back();
+          if (best.size() == k) bound = best.back().t;
+        }
+        return true;
+      });
 }
 
 std::size_t HitOracle::size_bytes() const {

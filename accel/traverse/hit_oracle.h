@@ -25,6 +25,8 @@ class HitOracle {
 
   /// The closest hit; of a ray that any hit ends some hit, which need not be the closest.
   Hit trace(const RayRequest& request) const;
+  /// The `k` nearest hits, sorted: by distance, instance, primitive and where they lie on it.
+  std::vector<Hit> nearest(const RayRequest& request, std::size_t k) const;
   /// Bytes of the trees and of the records of instances.
   std::size_t size_bytes() const;
   /// At most so many for a scene without flattened instances.
@@ -33,6 +35,11 @@ class HitOracle {
  private:
   /// Lowers `best` to hits in an instance. True if the search is over.
   bool trace_instance(const RayRequest& request, std::uint32_t instance, float entry, Hit& best) const;
+
+  /// Adds to `best`, which has `k` at most, the hits in an instance that are among the nearest; `bound`: no farther
+  /// one is.
+  void nearest_in_instance(const RayRequest& request, std::uint32_t instance, float entry, std::size_t k, float& bound,
+                           std::vector<Hit>& best) const;
 
   BoxLevel box_;
   OraclePrimitives primitives_;

@@ -14,6 +14,7 @@
 
 #include "accel/box/double_slab-inl.h"
 #include "accel/box/slab-inl.h"
+#include "accel/primitive/nearest_ray.h"
 #include "accel/traverse/depth_first-inl.h"
 #include "accel/traverse/members-inl.h"
 
@@ -39,6 +40,7 @@ template <class Slab>
 HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
                               std::uint8_t* any_hit_calls, IntersectionCounts& counts) {
   IntersectionCounts own;
+  const WholeRay whole(record);
   FrameStorage<Slab> frame;
   enter_frame(accel, key.instance, record, &frame.ray, own);
   own.transforms = own.transforms_in_double = 0;  // counted with the boxes
@@ -139,6 +141,7 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
       if (misses_member<Slab>(accel, key.instance, record, counts)) continue;
     tests += tested;
     const std::uint64_t any_hit_calls = counts.any_hit_calls;
+    const WholeRay whole(record);
     FrameStorage<Slab> frame;
     enter_frame(accel, key.instance, record, &frame.ray, counts);
     test_leaf(accel, key.ref, lanes, frame.ray, record.hit);

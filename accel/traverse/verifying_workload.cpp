@@ -1,6 +1,8 @@
 #include "accel/traverse/verifying_workload.h"
 
+#include <algorithm>
 #include <bit>
+#include <vector>
 
 namespace carousel::accel {
 
@@ -16,12 +18,24 @@ void VerifyingWorkload::shade(WorkerId worker, const HitBatch& completed, RayBat
   compared_.fetch_add(completed.size(), std::memory_order_relaxed);
   for (const RayResult& result : completed) {
     const RayResult expected{result.ray, oracle_.trace({result.ray, result.tag}), result.tag};
-    if (same_result(result, expected)) continue;
-    mismatches_.fetch_add(1, std::memory_order_relaxed);
-    const std::lock_guard lock(example_mutex_);
-    if (!example_) example_ = Mismatch{result, expected};
+    if (!same_result(result, expected)) note(result, expected);
   }
   inner_.shade(worker, completed, out);
+}
+
+void VerifyingWorkload::note(const RayResult& got, const RayResult& expected) {
+  mismatches_.fetch_add(1, std::memory_order_relaxed);
+  const std::lock_guard lock(example_mutex_);
+  if (!example_) example_ = Mismatch{got, expected};
+}
+
+void VerifyingWorkload::compare_nearest(const RayResult& ray, std::span<const Hit> hits) {
+  const std::vector<Hit> expected = oracle_.nearest({ray.ray, ray.tag}, nearest_);
+  for (std::size_t i = 0; i < std::max(hits.size(), expected.size()); ++i) {
+    const RayResult got{ray.ray, i < hits.size() ? hits[i] : Hit{}, ray.tag},
+        wanted{ray.ray, i < expected.size() ? expected[i] : Hit{}, ray.tag};
+    if (!same_result(got, wanted)) return note(got, wanted);
+  }
 }
 
 }  // namespace carousel::accel

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <mutex>
 #include <optional>
+#include <span>
 
 #include "accel/traverse/hit_oracle.h"
 #include "core/types/wrapped_workload.h"
@@ -19,6 +20,10 @@ class VerifyingWorkload final : public WrappedWorkload {
 
   void shade(WorkerId worker, const HitBatch& completed, RayBatch& out) override;
 
+  /// Compares the hits of a ray that looks for several (`rays.query.nearest`) with the oracle's, as many as `nearest`.
+  void compare_nearest(const RayResult& ray, std::span<const Hit> hits);
+  void set_nearest(std::size_t nearest) { nearest_ = nearest; }
+
   struct Mismatch {
     RayResult got, expected;
   };
@@ -28,7 +33,10 @@ class VerifyingWorkload final : public WrappedWorkload {
   const std::optional<Mismatch>& example() const { return example_; }
 
  private:
+  void note(const RayResult& got, const RayResult& expected);
+
   const HitOracle& oracle_;
+  std::size_t nearest_ = 0;
   std::atomic<std::uint64_t> compared_{0}, mismatches_{0};
   std::mutex example_mutex_;
   std::optional<Mismatch> example_;

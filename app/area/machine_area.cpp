@@ -10,6 +10,7 @@
 #include "core/config/load/validate.h"
 #include "core/config/own_sections.h"
 #include "core/system/error.h"
+#include "core/types/nearest_counts.h"
 #include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/topology/wire_length.h"
 
@@ -20,7 +21,7 @@ namespace {
 using report::AreaPart;
 
 constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024, kEntryBytes = 12,
-                 kNodeBytes = 128;
+                 kNodeBytes = 128, kWaitingBytes = 256;
 
 void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, const TestersConfig& testers) {
   for (const auto [kind, units] : testers.units) {
@@ -67,6 +68,13 @@ double stack_kib(const Config& c, std::int64_t resource) {
   return register_kib(c, resource) + static_cast<double>(simt.warp * simt.warps) * kNodeBytes / kKiB;
 }
 
+/// Bytes beside a record for its buffer of hits, and for what waits for a later round.
+double hit_buffer_bytes(const Config& c) {
+  const QueryConfig& query = c.rays.query;
+  const bool resumes = query.in_rounds() && query.rounds == QueryConfig::Rounds::kResume;
+  return static_cast<double>(query.buffered()) * static_cast<double>(kBufferedHitBytes) + (resumes ? kWaitingBytes : 0);
+}
+
 }  // namespace
 
 /// Rays that are packed anew keep their stacks while they wait for a warp.
@@ -92,7 +100,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     add_units(parts[AreaPart::kUnits], c, scene, own_sections(c, r).testers);
   const auto all = [&](const auto& of) { return static_cast<double>(sum_of_resources(c, of)); };
   const auto slots = static_cast<double>(all_slots(c));
-  store(AreaPart::kRayStores, slots * kRecordBytes / kKiB);
+  store(AreaPart::kRayStores, slots * (kRecordBytes + hit_buffer_bytes(c)) / kKiB);
   if (c.rays.banks > 0)  // each bank has two ports
     parts[AreaPart::kRayStores].mm2 += parts[AreaPart::kRayStores].size * cost(c, Cost::kPortArea);
   if (topology.has_packets())

@@ -171,6 +171,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
     add_links(r, result, config);
     r.drawing = drawing(config.topology, true);
   }
+  add_nearest(r, result, config);
   add_ranks(r, result);
   add_ray_queues(r, result, config);
   r.shading.workers = static_cast<std::uint64_t>(shader_workers(config));

@@ -32,7 +32,8 @@ class Account {
         link_mm_(link_mm),
         costs_(costs_of(config)),
         memory_times_(memory_times),
-        rays_kib_(mean([](const OwnSections& one) { return one.rays.slots_per_resource; }) / 16 /
+        rays_kib_(mean([](const OwnSections& one) { return one.rays.slots_per_resource; }) *
+                  (kRecordBytes + static_cast<double>(config.rays.query.buffered()) * kBufferedHitBytes) / 1024 /
                   static_cast<double>(own_testers(config))) {}
 
   report::EnergyParts take() {
@@ -62,6 +63,10 @@ class Account {
     for (const report::Resource& resource : *r_.resources)
       reads += resource.units ? resource.units->second_reads.value_or(0) : 0;
     access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(reads), rays_kib_);
+    if (!r_.nearest) return;
+    const NearestCounts& hits = r_.nearest->counts;
+    access(EnergyPart::kRayStore, static_cast<double>(hits.read_bytes + hits.written_bytes + hits.waiting_bytes),
+           rays_kib_);
   }
 
   void stores() {

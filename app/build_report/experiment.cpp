@@ -146,6 +146,8 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   if (p.config().verify == Verify::kReference) {
     oracle.emplace(p.scene, p.config().accuracy, p.accel.any_hit);
     verifying.emplace(job.workload(), *oracle);
+    verifying->set_nearest(static_cast<std::size_t>(p.config().rays.query.nearest));
+    if (p.nearest_hits) p.nearest_hits->judge_by(&*verifying);
   }
   const bool picture = p.config().workload.kind == WorkloadConfig::Kind::kRays;
   const auto rays_a_path = static_cast<std::uint64_t>(picture ? 2 * p.config().image.max_depth : 1);
@@ -160,6 +162,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   }
   const ringbus::RunResult result =
       simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, heat, frame);
+  if (p.nearest_hits) p.nearest_hits->judge_by(nullptr);
   if (job.ranks() != nullptr) {
     share_signal(*job.ranks());
     job.join();

@@ -8,6 +8,7 @@
 #include "core/config/graph/clocks.h"
 #include "core/config/graph/graph.h"
 #include "core/config/graph/ring.h"
+#include "core/config/own_sections.h"
 #include "core/types/enum_names.h"
 #include "core/types/ray.h"
 #include "report/text/ratio.h"
@@ -59,6 +60,21 @@ void add_ring(report::Report& r, const ringbus::RunResult& result, const Config&
   r.packets = report::Packets{sum};
   r.throughput =
       report::Throughput{ratio(sum.packets_issued, rays), ratio(sum.hops, rays), ratio(sum.tests.tests(), rays)};
+}
+
+void add_nearest(report::Report& r, const ringbus::RunResult& result, const Config& config) {
+  if (!result.nearest) return;
+  const QueryConfig& query = config.rays.query;
+  report::Nearest& out = r.nearest.emplace();
+  out.nearest = static_cast<std::uint64_t>(query.nearest);
+  out.buffer = static_cast<std::uint64_t>(query.buffered());
+  out.buffer_bytes = out.buffer * kBufferedHitBytes * static_cast<std::uint64_t>(all_slots(config));
+  out.counts = result.nearest->use.counts;
+  out.digest = result.nearest->digest.hex();
+  for (const RoundVisits& round : result.nearest->use.rounds) {
+    out.visits += round.visits;
+    out.rounds.push_back({out.rounds.size(), round});
+  }
 }
 
 void add_census(report::Report& r, const RayCensus& census, const accel::Accel& accel) {

@@ -16,6 +16,9 @@ void add_ring(report::Report& report, const ringbus::RunResult& result, const Co
 /// Fills in the ranks and their messages, if there are several.
 void add_ranks(report::Report& report, const ringbus::RunResult& result);
 
+/// Fills in what rays that look for several hits have found, if there are any.
+void add_nearest(report::Report& report, const ringbus::RunResult& result, const Config& config);
+
 /// Fills in the way of the rays and the depth-first baseline, for which it traces rays.
 void add_census(report::Report& report, const RayCensus& census, const accel::Accel& accel);
 

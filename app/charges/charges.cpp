@@ -31,6 +31,8 @@ constexpr std::array kCharges{
     Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
     Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "", "topology.shape",
            "independent"},
+    Charge{"waiting_hits", "nodes and hits that wait for a later round are moved in no time, and always find room", "",
+           "", "", "rays.query.rounds", "resume"},
     Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage", "quantised"},
 };
 

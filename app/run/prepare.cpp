@@ -106,10 +106,16 @@ void load_scene(Prepared& p, const SceneConfig& config) {
 }
 
 void set_query(Prepared& p) {
+  const QueryConfig& query = p.config().rays.query;
+  const bool all = query.hits == Query::kAll, several = query.nearest > 0,
+             list = p.config().workload.kind == WorkloadConfig::Kind::kRaysFrom;
   p.all_hits.reset();
-  if (p.config().rays.query == Query::kAll)
-    p.all_hits = std::make_unique<AllHits>(static_cast<std::size_t>(p.config().rays.hits_per_ray));
-  p.accel.all_hits = p.all_hits.get();
+  if (all || (several && list))
+    p.all_hits =
+        std::make_unique<AllHits>(static_cast<std::size_t>(all ? p.config().rays.hits_per_ray : query.nearest));
+  p.nearest_hits = several ? std::make_unique<NearestHits>(p.all_hits.get()) : nullptr;
+  p.accel.all_hits = all ? p.all_hits.get() : nullptr;
+  p.accel.nearest_hits = p.nearest_hits.get();
 }
 
 /// Refuses a scene whose structure cannot be built here, and warns of one that every ray has to search in many places.

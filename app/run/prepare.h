@@ -39,7 +39,8 @@ struct Prepared {
   accel::Accel accel;
   std::optional<accel::StructureSize> structure;   ///< size of all ranks' shares; absent where all of it is here
   std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
-  std::unique_ptr<AllHits> all_hits;               ///< with rays.query: all those of `accel`; else null
+  std::unique_ptr<AllHits> all_hits;          ///< with rays.query: all, or nearest, those of a file's rays; else null
+  std::unique_ptr<NearestHits> nearest_hits;  ///< with rays.query.nearest those of `accel`; else null
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;
 
   const Config& config() const { return located.config; }

@@ -21,7 +21,7 @@ Workload::Generated RayListWorkload::generate(WorkerId worker, std::size_t max_r
 
 void RayListWorkload::shade(WorkerId worker, const HitBatch& completed, RayBatch&) {
   for (const RayResult& result : completed) {
-    if (all_ != nullptr && (result.tag.flags & kRayAll) != 0) {
+    if (all_ != nullptr && !takes_any_hit(result.tag)) {
       take_all(worker, result);
       continue;
     }
@@ -34,6 +34,7 @@ void RayListWorkload::take_all(WorkerId worker, const RayResult& result) {
   std::vector<Hit> hits = all_->of(result.tag.path);
   if (hits.empty()) hits.push_back(result.hit);  // a miss
   RayResult row = result;
+  row.tag.flags |= kRayAll;  // a row a hit
   for (std::uint32_t k = 0; k < hits.size(); ++k) {
     row.hit = hits[k];
     workers_[worker.value].digest.add(hit_term(result.tag.path, k, result.tag, row.hit));

@@ -18,7 +18,7 @@ namespace carousel::app {
 class RayListWorkload final : public Workload {
  public:
   /// rays[i].tag.path must be i.
-  /// A ray with kRayAll has the hits that `all` holds of it.
+  /// A ray that no hit ends has the hits that `all` holds of it; null: its closest.
   RayListWorkload(RayBatch rays, std::size_t workers, const AllHits* all = nullptr)
       : rays_(std::move(rays)), workers_(workers), all_(all) {}
 

@@ -26,13 +26,13 @@ RenderJob::RenderJob(const Prepared& prepared, const Config& config, const shadi
   if (config.workload.kind == WorkloadConfig::Kind::kRaysFrom) {
     const auto path = find_beside(prepared.config_folder, config.workload.rays_from);
     RayBatch rays = report::read_rays_csv(path);
-    if (config.rays.query == Query::kAny) {
+    if (config.rays.query.hits == Query::kAny) {
       for (RayRequest& ray : rays) {
         ray.tag.kind = RayKind::kShadow;  // the kind whose way ends at any hit
         ray.tag.flags &= static_cast<std::uint8_t>(~kRayClosest);
       }
     }
-    if (config.rays.query == Query::kAll) {
+    if (config.rays.query.hits == Query::kAll) {
       for (RayRequest& ray : rays) {
         if (ray.tag.kind == RayKind::kShadow) ray.tag.kind = RayKind::kCamera;  // no hit ends its way
         ray.tag.flags |= kRayAll;

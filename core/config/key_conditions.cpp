@@ -79,7 +79,9 @@ constexpr Row kRows[] = {
     {"topology.channels", kChannels},
     {"rays.reads_per_cycle", kCycle},
     {"rays.banks", kCycle},
-    {"rays.query", kList},
+    {"rays.query.hits", kList},
+    {"rays.query.buffer", kNearest},
+    {"rays.query.rounds", kRounds},
     {"rays.hits_per_ray", kQueryAll},
     {"rays.queue", kNative},
     {"rays.queue_depth", kNative},
@@ -154,6 +156,7 @@ constexpr Row kRows[] = {
     {"testers.transform", kCycle},
     {"testers.procedural", kCycle},
     {"testers.any_hit_unit", kCycle},
+    {"testers.hit_buffer", kCycle},
     {"testers.simd", kCycle},
     {"testers.simd.map", kVectors},
     {"testers.simd.reformat_cycles", kVectors},
@@ -310,6 +313,8 @@ constexpr const Condition* condition_of(UnitKind kind) {
       return &kProcedural;
     case UnitKind::kAnyHit:
       return &kAnyHitUnits;
+    case UnitKind::kHitBuffer:
+      return &kNearest;
     default:  // every scene puts the others to use
       return nullptr;
   }

@@ -193,8 +193,12 @@ inline constexpr Condition kFreeSize{[](const C& c, const S&) {
                                      },
                                      "area.budget_mm2 decides"};
 
-inline constexpr Condition kQueryAll{[](const C& c, const S&) { return c.rays.query == Query::kAll; },
-                                     "rays.query is not all"};
+inline constexpr Condition kQueryAll{[](const C& c, const S&) { return c.rays.query.hits == Query::kAll; },
+                                     "rays.query.hits is not all"};
+inline constexpr Condition kNearest{[](const C& c, const S&) { return c.rays.query.nearest > 0; },
+                                    "rays look for one hit"};
+inline constexpr Condition kRounds{[](const C& c, const S&) { return c.rays.query.in_rounds(); },
+                                   "one round finds all hits"};
 inline constexpr Condition kDepthFirst{
     [](const C& c, const S&) {
       return !exchanges_packets(c) || c.collections.traversal != Traversal::kSpread || c.bvh.treelets.bytes > 0;

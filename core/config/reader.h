@@ -87,6 +87,13 @@ class Reader : public RowVisitor<Reader> {
 
   void on_section_or_number(std::string_view key, TesterUnits& value, const char*);
   template <class T>
+  void section_or_choice(std::string_view key, T& value, const char*) {
+    const Visit visit(*this, key);
+    if (!visit.node) return;
+    if (visit.node->kind == Node::Kind::kMap) return read(*visit.node, value);
+    if (const auto chosen = choose<decltype(value.hits)>(*visit.node)) value.hits = *chosen;
+  }
+  template <class T>
   void list(std::string_view key, std::vector<T>& value, const char*) {
     const Visit visit(*this, key);
     if (!visit.node) return;

@@ -43,6 +43,10 @@ class RowWalk {
     return self().rest(path_of(key) + ".units", value.units);
   }
   template <class T>
+  void section_or_choice(std::string_view key, T& value, const char* meaning) {
+    section(key, value, meaning);
+  }
+  template <class T>
   void section(std::string_view key, T& value, const char*) {
     const std::size_t before = path_.size();
     path_ = path_of(key);

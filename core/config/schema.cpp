@@ -103,6 +103,13 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     put(key, {{"anyOf", {section, std::move(units)}}}, "", meaning);
   }
   template <class T>
+  void section_or_choice(std::string_view key, T& value, const char* meaning) {
+    const Json section = object(value, "");
+    Json word = section["properties"]["hits"];
+    for (const char* shown : {"default", "description"}) word.erase(shown);
+    put(key, {{"anyOf", {section, std::move(word)}}}, "", meaning);
+  }
+  template <class T>
   void list(std::string_view key, std::vector<T>&, const char* meaning) {
     Json item = object(T{}, "");
     if (!T::kRequired.empty()) item["required"] = Json::array({std::string(T::kRequired)});

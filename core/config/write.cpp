@@ -82,6 +82,10 @@ class JsonWriter : public RowVisitor<JsonWriter> {
   }
   void on_section_or_number(std::string_view key, TesterUnits& value, const char*) { put(key, object(value)); }
   template <class T>
+  void section_or_choice(std::string_view key, T& value, const char*) {
+    put(key, object(value));
+  }
+  template <class T>
   void list(std::string_view key, std::vector<T>& value, const char*) {
     Json items = Json::array();
     for (const T& item : value) items.push_back(object(item));

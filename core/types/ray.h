@@ -34,6 +34,7 @@ enum RayFlag : std::uint8_t {
   kRayForceOpaque = 8,  ///< nothing is asked, whatever lets rays through (core/types/any_hit.h)
   kRayAlone = 16,       ///< unlike its neighbours, and not worth a place in a bundle: no more than a hint
   kRayAll = 64,         ///< no hit ends its way: each is reported (core/types/hit_sink.h), and the ray misses
+  kRayNearest = 128,    ///< it looks for several hits: a buffer lies beside its record (accel/primitive/nearest_ray.h)
   kRayClosest = 32,     ///< a shadow ray that wants to know the first thing in its way, since light may pass that
 };
 inline constexpr std::uint8_t kRequestFlags =

@@ -19,7 +19,7 @@ namespace carousel {
 // kPrimitive also needs its place in the order of the tests, in ringbus/cycle/testers/tester.h.
 
 /// A kind of test unit that a resource has.
-enum class UnitKind : std::uint8_t { kBox, kTriangle, kPlane, kBundle, kTransform, kProcedural, kAnyHit };
+enum class UnitKind : std::uint8_t { kBox, kTriangle, kPlane, kBundle, kTransform, kProcedural, kAnyHit, kHitBuffer };
 
 /// The place of a kind in the order of a visit's tests.
 enum class Stage : std::uint8_t {
@@ -28,6 +28,7 @@ enum class Stage : std::uint8_t {
   kNode,       ///< at a node, boxes and planes
   kPrimitive,  ///< at a leaf, primitives of all kinds side by side
   kAnyHit,     ///< then the opacity of the primitives that are hit
+  kHitBuffer,  ///< then hits are put into the sorted buffers of rays
 };
 
 struct UnitKindRow {
@@ -62,6 +63,9 @@ inline constexpr auto kUnitKinds = std::to_array<UnitKindRow>({
     {UnitKind::kAnyHit, "any_hit_unit", "any_hit", "any_hit_lookups",
      "Units that decide if a non-opaque primitive is hit, with any_hit: inline.", 1, 1, 8,
      &IntersectionCounts::any_hit_calls, Stage::kAnyHit, Shown::kAnyHitUnit},
+    {UnitKind::kHitBuffer, "hit_buffer", "hit_buffer", "hit_buffer_steps",
+     "Units that put hits into the sorted buffers of rays, a comparison and a shift a step.", 1, 1, 1,
+     &IntersectionCounts::buffer_steps, Stage::kHitBuffer, Shown::kNearest},
 });
 
 constexpr std::size_t unit_index(UnitKind kind) {

@@ -57,11 +57,14 @@ void write_csv(AtomicFile& file, const std::vector<HitRow>& rows, bool hits, boo
       std::any_of(rows.begin(), rows.end(), [](const HitRow& row) { return (row.result.tag.flags & kWordFlags) != 0; });
   if (flags) line.append(",").append(kFlagsColumn);
   file.write(line + "\n");
+  // A ray of which each hit has a row keeps its number, and so do those between.
+  const bool several =
+      std::any_of(rows.begin(), rows.end(), [](const HitRow& row) { return (row.result.tag.flags & kRayAll) != 0; });
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const bool of_all = (rows[i].result.tag.flags & kRayAll) != 0;
     if (of_all && !hits && rows[i].sample > 0) continue;  // one row a hit: the ray itself has been written
     line.clear();
-    append_ray(line, of_all ? rows[i].pixel : i, rows[i].result);
+    append_ray(line, several ? rows[i].pixel : i, rows[i].result);
     if (hits) append_hit(line, rows[i].result);
     if (flags) append_flags(line, rows[i].result.tag.flags);
     line += '\n';

@@ -20,6 +20,7 @@
 #include "report/sections/ranks.h"
 #include "report/sections/rays.h"
 #include "report/sections/rays/heat.h"
+#include "report/sections/rays/nearest.h"
 #include "report/sections/rays/ray_time.h"
 #include "report/sections/resource.h"
 #include "report/sections/sampled.h"
@@ -63,6 +64,7 @@ struct Report {
   std::optional<Structure> structure;
   std::optional<Levels> levels;
   std::optional<CullPlanes> cull_planes;
+  std::optional<Nearest> nearest;
   std::optional<Packets> packets;
   std::optional<Collections> collections;
   std::optional<std::vector<Resource>> resources;
@@ -123,6 +125,7 @@ void describe(V& v, const Report& r) {
   v.section("structure", r.structure, "structures over meshes, when there are rays");
   v.section("levels", r.levels, "instances of instances, when the structure has more than two levels");
   v.section("cull_planes", r.cull_planes, "size of the cull planes and work that they spare, when there are any");
+  v.section("nearest", r.nearest, "rays that look for several hits and what these cost, with rays.query.nearest");
   v.section("packets", r.packets, "packets of all resources");
   v.section("collections", r.collections, "collections: rays waiting for a node");
   v.section("resources", r.resources, "each resource");

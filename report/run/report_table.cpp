@@ -137,6 +137,13 @@ void test_line(Table& table, const Tests& t) {
              ratio(b.formed_rays, b.formed), part(b.all), part(b.none), part(b.split));
 }
 
+void nearest_line(Table& table, const Nearest& n) {
+  table.line("nearest",
+             "{:.2f} hits a ray of {}, in {:.2f} rounds   {:.2f} nodes   {:.2f} insertions into buffers of {}",
+             ratio(n.counts.hits, n.counts.rays), n.nearest, ratio(n.counts.rounds, n.counts.rays),
+             ratio(n.visits, n.counts.rays), ratio(n.counts.inserted, n.counts.rays), bytes_text(n.buffer_bytes));
+}
+
 /// The sum over all depths; report.json has each depth.
 void cull_plane_lines(Table& table, const Report& report) {
   const CullPlanes& planes = *report.cull_planes;
@@ -358,6 +365,7 @@ std::string report_table(const Report& report) {
   if (report.energy && report.area) energy_lines(table, report);
   if (report.tests) test_line(table, *report.tests);
   if (report.cull_planes) cull_plane_lines(table, report);
+  if (report.nearest) nearest_line(table, *report.nearest);
   packet_lines(table, report);
   if (report.effects && report.effects->spared) table.text(spared_table(*report.effects->spared));
   if (report.shading.proof) proof_line(table, *report.shading.proof);

@@ -221,6 +221,12 @@ void test_words(Words& w) {
       .item("N leaves of N triangles", "cull_planes.levels[].leaves_spared")
       .item("N transforms", "cull_planes.levels[].transforms_spared")
       .item("N boxes", "cull_planes.levels[].box_tests_spared");
+  w.line("nearest")
+      .item("N hits a ray of N, in N rounds", "nearest.hits_per_ray",
+            "hits of a ray that looks for several, as many as it looks for, and its rounds")
+      .item("N nodes", "nearest.visits", "nodes and leaves that such a ray is tested against, in the mean")
+      .item("N insertions into buffers of N", "nearest.inserted",
+            "hits that such a ray puts into its buffer, in the mean, and the bytes of all buffers");
 }
 
 void packet_words(Words& w) {

@@ -35,7 +35,9 @@ struct EnergyPartRow {
 };
 
 inline constexpr auto kEnergyParts = std::to_array<EnergyPartRow>({
-    {"ray_store", "accesses of 64 bits to the ray store: 8 for a record read, and the bytes of new and completed rays"},
+    {"ray_store",
+     "accesses of 64 bits to the ray store: 8 for a record read, and the bytes of new and completed rays and of their "
+     "buffers of hits"},
     {"collections", "accesses of 64 bits to the collections: each of 4 bytes an ID is written and read once"},
     {"shape_buffers",
      "accesses of 64 bits to the shape buffers: the shape data that comes, and 64 bytes whenever a "
@@ -129,7 +131,7 @@ struct AreaPartRow {
 
 inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
     {"test_units", "test units", "test units of all resources (units)"},
-    {"ray_stores", "ray stores", "ray stores, of 64 bytes a slot (KiB)"},
+    {"ray_stores", "ray stores", "ray stores, of 64 bytes a slot and their buffers of hits (KiB)"},
     {"collections", "collections", "collections, of 4 bytes a ray ID (KiB)"},
     {"stacks", "stacks", "stacks of rays, of 64 bytes a slot, with topology.shape: independent (KiB)"},
     {"shape_buffers", "shape buffers", "shape buffers (KiB)"},

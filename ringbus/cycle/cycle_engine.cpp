@@ -128,6 +128,7 @@ class CycleRun {
       c.ray_times = times->rows();
       if (kChecked) check_ray_times(*c.ray_times, c.residence.sum());
     }
+    out.nearest = machine_.shared().nearest();
     const ResourceLoss& loss = machine_.shading().loss();
     out.rays_restarted = loss.rays_restarted();
     out.paths_restarted = loss.paths_restarted();

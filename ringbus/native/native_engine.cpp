@@ -180,6 +180,7 @@ class NativeRun {
     out.threads = threads_.count();
     out.start = start_;
     parts_.add_to(out);
+    out.nearest = parts_.machine().shared.nearest();
     before_restart_.add_to(out);
     if (parts_.gate() != nullptr) add_rank(out);
     if (series_.on()) out.series = series_.finish();

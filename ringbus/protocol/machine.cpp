@@ -43,6 +43,20 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
                            one_collection_a_ray(config.collections.traversal))),
       answers(topology.broadcasts() && !stays ? topology.resources() : 0, std::vector<Packet>(packets.size())),
       stores(make_ray_stores(slots_of_resources(config), config.bundles, share)),
-      control(control_settings(config, accel, scene_size, topology, share), stores) {}
+      control(control_settings(config, accel, scene_size, topology, share), stores) {
+  if (config.rays.query.nearest == 0) return;
+  for (const auto& store : stores) store->find_nearest(config.rays.query, accel);
+}
+
+std::optional<NearestResult> Machine::nearest() const {
+  std::optional<NearestResult> out;
+  for (const auto& store : stores) {
+    if (store->nearest() == nullptr) continue;
+    if (!out) out.emplace();
+    out->use += store->nearest()->use();
+    out->digest.add(store->nearest()->digest());
+  }
+  return out;
+}
 
 }  // namespace carousel::ringbus

@@ -9,6 +9,7 @@
 #include "ringbus/packets/packet.h"
 #include "ringbus/protocol/flow_rules.h"
 #include "ringbus/rays/ray_control.h"
+#include "ringbus/results/nearest_result.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel {
@@ -36,6 +37,9 @@ struct Machine {
   PacketId first_packet(ResourceId owner) const {
     return PacketId(owner.value * static_cast<std::uint32_t>(topology.directions()) * packets_per_direction);
   }
+
+  /// What rays that look for several hits have found and cost, over all resources; absent if none does.
+  std::optional<NearestResult> nearest() const;
 
   const accel::Accel& accel;
   RankShare share;

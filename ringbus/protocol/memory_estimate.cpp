@@ -20,6 +20,10 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   const std::uint64_t next = ordered ? sizeof(NextNode) : 0;
   MemoryEstimate e;
   e.ray_store = slots * (sizeof(RayRecord) + 2 * sizeof(std::uint32_t));
+  const QueryConfig& query = config.rays.query;
+  if (query.nearest > 0)
+    e.ray_store += slots * (sizeof(accel::NearestRay) +
+                            u(query.buffered() + (query.in_rounds() ? query.nearest : 0)) * sizeof(Hit));
   if (config.bundles.size > 0) {
     const auto records = [&](const OwnSections& one) {
       const BundleRoom room = bundle_room(config.bundles, one.rays.slots_per_resource);

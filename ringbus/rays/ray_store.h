@@ -8,11 +8,13 @@
 #include <vector>
 
 #include "accel/box/bundle.h"
+#include "accel/structure/accel.h"
 #include "accel/traverse/ray_check.h"
 #include "core/config/fields/bundles.h"
 #include "core/system/error.h"
 #include "core/system/huge_pages.h"
 #include "core/types/workload.h"
+#include "ringbus/rays/nearest_rays.h"
 #include "ringbus/rays/rank_share.h"
 #include "ringbus/rays/ray_id.h"
 
@@ -45,8 +47,7 @@ class RayStore {
 
   /// Puts a ray into a free slot, waiting for `tests` tests. The ID is valid until the slot is freed.
   RayId load(std::uint32_t slot, const RayRequest& request, std::int32_t tests) {
-    accel::start_record(request, records_[slot]);
-    records_[slot].pending = tests;
+    start(slot, request, tests);
     RayId id = layout_.make(owner_, slot);
     if constexpr (kChecked) id.generation.set(++generations_[slot]);
     return id;
@@ -60,9 +61,22 @@ class RayStore {
   /// Puts a ray into the slot of an ID that another rank has made by lease(), waiting for `tests` tests.
   void load_leased(RayId id, const RayRequest& request, std::int32_t tests) {
     const std::uint32_t slot = layout_.slot(id);
-    accel::start_record(request, records_[slot]);
-    records_[slot].pending = tests;
+    start(slot, request, tests);
     if constexpr (kChecked) generations_[slot] = id.generation.get();
+  }
+  /// Its rays look for several hits from now on (`rays.query.nearest`), as NearestRays says.
+  void find_nearest(const QueryConfig& query, const accel::Accel& accel) {
+    nearest_ = std::make_unique<NearestRays>(query, accel, static_cast<std::uint32_t>(records_.size()));
+  }
+  /// Null if rays look for one hit.
+  NearestRays* nearest() { return nearest_.get(); }
+  const NearestRays* nearest() const { return nearest_.get(); }
+  /// Appends the result of the ray in `slot`, which is complete.
+  void finish(std::uint32_t slot, HitBatch& out) {
+    if (nearest_ == nullptr)
+      accel::finish_record(records_[slot], out);
+    else
+      nearest_->finish(records_[slot], out);
   }
   /// Makes a bundle, waiting for `tests` tests, of the rays in `ray_slots`; `slot` is a free one for bundles. Changes
   /// no ray's count.
@@ -139,10 +153,17 @@ class RayStore {
   const RayIdLayout& layout() const { return layout_; }
 
  private:
+  void start(std::uint32_t slot, const RayRequest& request, std::int32_t tests) {
+    accel::start_record(request, records_[slot]);
+    records_[slot].pending = tests;
+    if (nearest_ != nullptr) nearest_->start(slot, records_[slot]);
+  }
+
   ResourceId owner_;
   std::uint32_t slots_;
   RayIdLayout layout_;
   std::vector<RayRecord, HugePageAllocator<RayRecord>> records_;
+  std::unique_ptr<NearestRays> nearest_;
   BundleRoom room_;
   std::vector<accel::BundleRecord> bundles_;
   std::vector<std::uint32_t> bundle_rays_;  // slots, `room_.rays` a bundle

@@ -25,7 +25,8 @@ inline RunFeatures features_of(const Config& config, const accel::Accel& accel) 
           .procedural = accel.procedural_primitives,
           .any_hit = accel.calls_any_hit(),
           .any_hit_units = has_units(config, scene_facts(accel), UnitKind::kAnyHit),
-          .quantised = config.bvh.storage == BvhConfig::Storage::kQuantised};
+          .quantised = config.bvh.storage == BvhConfig::Storage::kQuantised,
+          .nearest = config.rays.query.nearest > 0};
 }
 
 }  // namespace carousel::ringbus

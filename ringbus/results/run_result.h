@@ -18,6 +18,7 @@
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/results/link_statistics.h"
 #include "ringbus/results/memory_request.h"
+#include "ringbus/results/nearest_result.h"
 #include "ringbus/results/occupancy_series.h"
 #include "ringbus/results/ray_log.h"
 #include "ringbus/results/ray_times.h"
@@ -82,6 +83,7 @@ struct RunResult {
   std::vector<ResourceStatistics> resources;      ///< empty without statistics
   std::vector<CollectionStore::Statistics> collections;
   std::vector<LinkResult> links;
+  std::optional<NearestResult> nearest{};   ///< if rays look for several hits
   std::vector<RankResult> ranks;            ///< empty if there is one
   std::optional<TimeSeries> series;         ///< with RunOptions::samples
   std::optional<Timeline> timeline;         ///< with RunOptions::timeline; with RunOptions::ray of its packets

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <optional>
 
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
@@ -26,16 +28,53 @@ inline constexpr auto kEnumNames<Query> = [] {
   return names<Query>({{kClosest, "closest"}, {kAny, "any"}, {kAll, "all"}});
 }();
 
+/// What the rays look for, and how those that look for several hits find them.
+struct QueryConfig {
+  Query hits = Query::kClosest;
+  std::int64_t nearest = 0;            ///< 0: the closest alone
+  std::optional<std::int64_t> buffer;  ///< absent: as many as `nearest`
+  enum class Rounds { kRestart, kResume } rounds = Rounds::kRestart;
+
+  /// The hits that a ray's buffer holds at once.
+  std::int64_t buffered() const { return std::min(buffer.value_or(nearest), nearest); }
+  /// True if one pass of the tree does not find them all.
+  bool in_rounds() const { return buffered() < nearest; }
+  friend bool operator==(const QueryConfig&, const QueryConfig&) = default;
+};
+
+template <>
+inline constexpr auto kEnumNames<QueryConfig::Rounds> = [] {
+  using enum QueryConfig::Rounds;
+  return names<QueryConfig::Rounds>({{kRestart, "restart"}, {kResume, "resume"}});
+}();
+
 struct RaysConfig {
   std::int64_t slots_per_resource = 1024;
   Placement placement = Placement::kBalanced;
   std::int64_t reads_per_cycle = 0, banks = 0;
-  Query query = Query::kClosest;
+  QueryConfig query;
   std::int64_t hits_per_ray = 1024;
   RayQueueConfig queue{QueueKind::kMpmcRing, 256};
 };
 
 namespace config {
+
+inline constexpr std::int64_t kMostNearest = 64;
+
+template <class V>
+void describe(V& v, QueryConfig& c) {
+  v.choice("hits", c.hits, "The hits of a file's rays that are looked for: the closest, any one, or all.");
+  v.field(
+      "nearest", c.nearest, IntRange{0, kMostNearest}, "hits",
+      "The nearest hits that a ray looks for which would look for the closest one. With 0 it finds that one alone.");
+  v.field_or_auto(
+      "buffer", c.buffer, IntRange{1, kMostNearest}, "hits",
+      "The hits that the sorted buffer beside a ray's record holds. With fewer than nearest a ray finds its "
+      "hits in rounds. auto: as many as nearest.");
+  v.choice("rounds", c.rounds,
+           "A further round begins at the root again and leaves out the hits that have been found; or it goes on with "
+           "the nodes and hits that the rounds before have set aside.");
+}
 
 template <class V>
 void describe(V& v, RaysConfig& c) {
@@ -53,7 +92,7 @@ void describe(V& v, RaysConfig& c) {
        "the units for primitives, which read one record a cycle. With 0 rays.reads_per_cycle is the limit.")
       .relax("ray_banks", Better::kTwice)
       .only(EngineKind::kCycle, "simulated ray memory");
-  v.choice("query", c.query, "The hits of a file's rays that are looked for: the closest, any one, or all.");
+  v.section_or_choice("query", c.query, "The hits that rays look for. A word stands for {hits: WORD}.");
   v.field("hits_per_ray", c.hits_per_ray, IntRange{1, 1 << 24}, "hits",
           "The largest number of hits of a ray with query: all. A ray with more ends the run with an error.");
   v.choice("queue", c.queue.kind,

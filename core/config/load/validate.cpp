@@ -11,6 +11,7 @@
 #include "core/config/load/frame_rules.h"
 #include "core/config/load/memory_rules.h"
 #include "core/config/load/network_rules.h"
+#include "core/config/load/query_rules.h"
 #include "core/config/load/rank_rules.h"
 #include "core/config/load/treelet_rules.h"
 #include "core/config/load/warp_rules.h"
@@ -46,7 +47,7 @@ class Rules {
     effects_are_known();
     ordered_needs_strips();
     order_has_a_depth_first_ray();
-    query_needs_a_file();
+    config::check_query(c, breach);
     hashed_homes_spill();
     config::check_graph(c, breach);
     config::check_rings(c, breach);
@@ -62,16 +63,6 @@ class Rules {
  private:
   void issue(const std::string& key, std::string message) {
     issues_.push_back({positions_.find(key), key, std::move(message)});
-  }
-
-  void query_needs_a_file() {
-    if (c.rays.query != Query::kClosest && c.workload.kind != WorkloadConfig::Kind::kRaysFrom)
-      issue("rays.query",
-            "a picture's shaders say which hits they look for; expected closest, or workload: {rays_from: FILE}");
-    if (c.rays.query == Query::kAll && c.verify == Verify::kReference)
-      issue("verify",
-            "the reference compares one hit a ray; expected none, or another rays.query than all; found "
-            "reference");
   }
 
   void one_scene() {

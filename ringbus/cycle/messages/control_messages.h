@@ -40,8 +40,10 @@ struct CompletedRays {
   } note = Note::kDone;
   std::vector<Cycle> placed{};  ///< where rays travel: the times at which they were given those slots
 
+  std::uint64_t hit_bytes = 0;  ///< of hits besides those of the records, with `rays.query.nearest`
+
   /// A record says where it lay, so the slots need no bytes of their own. A note has 4.
-  std::uint64_t bytes() const { return rays.size() * sizeof(RayRecord) + (note == Note::kDone ? 0 : 4); }
+  std::uint64_t bytes() const { return rays.size() * sizeof(RayRecord) + hit_bytes + (note == Note::kDone ? 0 : 4); }
 };
 
 struct ControlKinds {

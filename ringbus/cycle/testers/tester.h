@@ -226,7 +226,9 @@ class Tester {
       const UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, of));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
-    return tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), of)).last;
+    const UnitBank::Reservation seen =
+        tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), of));
+    return tested(banks_[UnitKind::kHitBuffer], seen, starts(UnitKind::kHitBuffer, counts, of)).last;
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const {

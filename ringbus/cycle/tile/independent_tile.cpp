@@ -5,8 +5,6 @@
 
 #include <fmt/format.h>
 
-#include "accel/traverse/ray_check.h"
-
 namespace carousel::ringbus::cycle {
 
 IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMemory& memory,
@@ -92,7 +90,7 @@ void IndependentTile::take_new_rays(Cycle now) {
       const std::uint32_t slot = store_.slot(id);
       ++active_;
       threads_[slot].ray = id;
-      threads_[slot].walk.start(accel_.root_key());
+      threads_[slot].walk.start(accel_.root_key(), nullptr, true);
       if (follows(slot)) [[unlikely]]
         note(RayFact::Kind::kAdmitted, now, now);
       spent(slot, RayStage::kLoad, now);
@@ -168,7 +166,7 @@ void IndependentTile::complete(std::uint32_t slot) {
   stack_.pushed_bytes += bytes.pushed;
   stack_.popped_bytes += bytes.popped;
   --active_;
-  accel::finish_record(store_.record(slot), completed_);
+  store_.finish(slot, completed_);
   transforms_.forget(slot);
   store_.retire(slot);
   freed_slots_.push_back(slot);
@@ -182,7 +180,7 @@ void IndependentTile::hand_over(Cycle now) {
     times_->done(freed_slots_[i], completed_[i].tag, now);
   trace_.note(now, StepKind::kComplete, 0, completed_.size());
   record({.kind = EventKind::kComplete, .resource = id_, .rays = static_cast<std::uint32_t>(completed_.size())});
-  completed_port_.send(completed_, freed_slots_, {}, now);
+  completed_port_.send(completed_, freed_slots_, {}, now, sent_hits(store_));
 }
 
 void IndependentTile::note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key) {

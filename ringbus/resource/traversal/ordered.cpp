@@ -4,6 +4,7 @@
 #include <numeric>
 #include <tuple>
 
+#include "accel/primitive/nearest_ray.h"
 #include "accel/traverse/kernels.h"
 #include "ringbus/resource/visit/count_children.h"
 #include "ringbus/resource/visit/last_first.h"
@@ -39,14 +40,24 @@ void OrderedTraversal::test_at(const NextNode& node, const LocalRays& local, Pac
       stacks_.push(slot, {context_.accel.child_key(node.key, lane), entry[lane],
                           static_cast<std::uint16_t>(node.depth + 1), true});
     });
-    const RayRecord& ray = context_.store.record(slot);
-    const bool done = (ray.tag.flags & kRayDone) != 0;
-    const NextNode next = done ? NextNode{} : stacks_.pop(slot, ray.hit.t);
+    const NextNode next = next_of(slot);
     packet.next[local.members[i]] = advance(slot, next);
     if (next.any) continue;
     stacks_.clear(slot);
     context_.completion.add_pending(slot, -1);
   }
+}
+
+NextNode OrderedTraversal::next_of(std::uint32_t slot) {
+  const RayRecord& ray = context_.store.record(slot);
+  if ((ray.tag.flags & kRayDone) != 0) return {};
+  accel::NearestRay* const nearest = accel::nearest_of(ray);
+  if (nearest == nullptr) return stacks_.pop(slot, ray.hit.t);
+  nearest->visited();
+  for (NextNode next; (next = stacks_.pop(slot, ray.hit.t)).any;)
+    if (!nearest->set_aside({next.key, next.entry, next.depth})) return next;
+  const std::optional<accel::WaitingNode> next = nearest->go_on();
+  return next ? NextNode{next->key, next->entry, next->depth, true} : NextNode{};
 }
 
 NextNode OrderedTraversal::advance(std::uint32_t slot, NextNode next) {

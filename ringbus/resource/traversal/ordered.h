@@ -38,6 +38,8 @@ class OrderedTraversal final : public TraversalMethod {
   NextNode root() const { return {context_.accel.root_key(), 0, 0, true}; }
   void test_at(const NextNode& node, const LocalRays& local, Packet& packet, TestOutcome& outcome);
   void test_each_at_its_own(Packet& packet, const LocalRays& local, TestOutcome& outcome);
+  /// The node that the ray in `slot` visits after the one that it has been tested against.
+  NextNode next_of(std::uint32_t slot);
   /// The ray in `slot` goes on to `next`; what its packet says of that.
   NextNode advance(std::uint32_t slot, NextNode next);
 

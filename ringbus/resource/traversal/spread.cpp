@@ -14,6 +14,7 @@ std::uint32_t SpreadTraversal::blocks_needed(accel::NodeKey key, std::uint32_t) 
 void SpreadTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outcome) {
   const TransformCharge charge(context_, local.slots, packet.key.instance);
   const accel::RayMembers members = context_.members(local.slots);
+  if (context_.store.nearest() != nullptr) context_.store.nearest()->visited(context_.store.records(), local.slots);
   if (packet.key.ref.is_inner()) {
     masks_.resize(local.size());
     accel::test_strip(context_.accel, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr},

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "accel/traverse/ray_check.h"
 #include "core/system/error.h"
 #include "core/types/workload.h"
 #include "ringbus/rays/ray_store.h"
@@ -47,7 +46,7 @@ class Completion {
 
  private:
   void complete(std::uint32_t slot) {
-    accel::finish_record(store_.record(slot), completed_);
+    store_.finish(slot, completed_);
     if (transforms_ != nullptr) transforms_->forget(slot);
     store_.retire(slot);
     freed_slots_.push_back(slot);

@@ -96,6 +96,10 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
   }
   void on_section_or_number(std::string_view, TesterUnits& value, const char*) { fill(value); }
   template <class T>
+  void section_or_choice(std::string_view, T& value, const char*) {
+    fill(value);
+  }
+  template <class T>
   void list(std::string_view, std::vector<T>& value, const char*) {
     value.resize(pick(3));
     for (T& item : value) fill(item);

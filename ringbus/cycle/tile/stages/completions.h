@@ -16,10 +16,11 @@ namespace carousel::ringbus::cycle {
 class Completions {
  public:
   /// Keeps references. `follows_tests`: a ray can be in several tests at once (RaysInTest).
-  Completions(ResourceId id, std::size_t slots, bool follows_tests, const LinkConfig& link, const SidePorts& ports,
+  Completions(ResourceId id, RayStore& store, bool follows_tests, const LinkConfig& link, const SidePorts& ports,
               TravellingRays& travelling, StatisticsSink& sink, TileRecorder& recorder)
       : id_(id),
-        in_test_(slots, follows_tests),
+        store_(store),
+        in_test_(store.slots(), follows_tests),
         port_(link, ports),
         travelling_(travelling),
         sink_(sink),
@@ -38,7 +39,7 @@ class Completions {
     recorder_.step(now, StepKind::kComplete, 0, done_.size());
     std::vector<Cycle> placed;
     if (travelling_.on()) placed = travelling_.free(slots_, now);
-    port_.send(done_, slots_, std::move(placed), now);
+    port_.send(done_, slots_, std::move(placed), now, sent_hits(store_));
   }
   /// Forgets what is left of a machine that begins anew: slots of bundles, which wait for a ray to go with (ray control
   /// has all slots back then), and rays in test.
@@ -49,6 +50,7 @@ class Completions {
 
  private:
   ResourceId id_;
+  RayStore& store_;
   RaysInTest in_test_;
   CompletedPort port_;
   TravellingRays& travelling_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "accel/primitive/nearest_ray.h"
 #include "ringbus/resource/visit/last_first.h"
 
 namespace carousel::ringbus::cycle {
@@ -15,8 +16,9 @@ std::uint64_t entry_bytes(accel::NodeKey key) {
 
 }  // namespace
 
-void RayWalk::start(accel::NodeKey from, const accel::TreePieces* pieces) {
+void RayWalk::start(accel::NodeKey from, const accel::TreePieces* pieces, bool in_rounds) {
   pieces_ = pieces;
+  in_rounds_ = in_rounds;
   exits_.clear();
   stack_.assign(1, {from, 0, 0, true});
   next_in_hand_ = true;
@@ -31,12 +33,19 @@ std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record, std::size_t
     next_in_hand_ = false;
     bytes_.held = 0;
   }
-  while (stack_.size() > beyond)
-    if (const NextNode top = pop(); !(top.entry > record.hit.t)) {
-      depth_ = top.depth;
-      return top.key;
-    }
-  return std::nullopt;
+  accel::NearestRay* const nearest = accel::nearest_of(record);
+  while (stack_.size() > beyond) {
+    const NextNode top = pop();
+    if (top.entry > record.hit.t) continue;
+    if (nearest != nullptr && nearest->set_aside({top.key, top.entry, top.depth})) continue;
+    depth_ = top.depth;
+    return top.key;
+  }
+  if (nearest == nullptr || !in_rounds_ || beyond > 0) return std::nullopt;
+  const std::optional<accel::WaitingNode> next = nearest->go_on();
+  if (!next) return std::nullopt;
+  depth_ = next->depth;
+  return next->key;
 }
 
 std::uint64_t RayWalk::bytes_of(std::size_t first, std::size_t last) const {
@@ -68,6 +77,7 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
   std::fill(std::begin(nearest), std::end(nearest), kInfinity);
   IntersectionCounts tests;
   accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, tests);
+  if (accel::NearestRay* const several = accel::nearest_of(ray.records[*ray.slots])) several->visited();
   tests.transforms = tests.transforms_in_double = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
   if (!key.ref.is_inner() || mask == 0) return tests;

@@ -23,8 +23,10 @@ class RayWalk {
   /// Keeps a reference.
   RayWalk(TransformAccount& transforms, ChildOrder order) : transforms_(&transforms), order_(order) {}
   void start(accel::NodeKey from) { start(from, nullptr); }
-  /// With `pieces` the walk stays in the piece of `from`, and exits() are the children outside that it has hit.
-  void start(accel::NodeKey from, const accel::TreePieces* pieces);
+  /// With `pieces` the walk stays in the piece of `from`, and exits() are the children outside that it has hit. With
+  /// `in_rounds` a ray that looks for several hits goes on with its next round where the walk would end
+  /// (accel::NearestRay).
+  void start(accel::NodeKey from, const accel::TreePieces* pieces, bool in_rounds = false);
   /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests. The
   /// oldest `beyond` entries of the stack are not at hand: where nothing else is left, there is nothing either.
   std::optional<accel::NodeKey> next(const RayRecord& record, std::size_t beyond = 0);
@@ -57,6 +59,7 @@ class RayWalk {
   std::vector<NextNode> stack_;  // and on top of it the first child
   bool next_in_hand_ = false;
   const accel::TreePieces* pieces_ = nullptr;
+  bool in_rounds_ = false;
   std::vector<NextNode> exits_;
   std::uint16_t depth_ = 0;  // of the last strip, below that at which the walk began
   std::uint32_t instance_ = kNoInstance;

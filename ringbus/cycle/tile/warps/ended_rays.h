@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "accel/traverse/ray_check.h"
 #include "ringbus/cycle/tile/stages/completed_port.h"
 #include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/rays/ray_store.h"
@@ -27,16 +26,18 @@ class EndedRays {
   void add(std::uint32_t slot, const RayWalk& walk, RayStore& store) {
     stack_.pushed_bytes += walk.stack_bytes().pushed;
     stack_.popped_bytes += walk.stack_bytes().popped;
-    accel::finish_record(store.record(slot), done_);
+    store.finish(slot, done_);
+    store_ = &store;
     store.retire(slot);
     slots_.push_back(slot);
   }
   const HitBatch& rays() const { return done_; }
-  void send(Cycle now) { port_.send(done_, slots_, {}, now); }
+  void send(Cycle now) { port_.send(done_, slots_, {}, now, store_ == nullptr ? 0 : sent_hits(*store_)); }
   const StackTraffic& stack() const { return stack_; }
 
  private:
   CompletedPort port_;
+  RayStore* store_ = nullptr;  ///< of the rays; null before the first
   HitBatch done_;
   std::vector<std::uint32_t> slots_;
   StackTraffic stack_;
