@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <stdexcept>
 
 #include "accel/exact/exact_triangle.h"
 #include "accel/primitive/local_ray.h"
@@ -22,6 +23,29 @@ template <class Slab>
   if (accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0) return true;
   ++ray.counts->any_hit_calls;
   return accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v);
+}
+
+#ifdef CAROUSEL_CHECKED
+inline constexpr bool kChecksMicromaps = true;
+#else
+inline constexpr bool kChecksMicromaps = false;
+#endif
+
+/// any_hit_accepts() for a triangle: its opacity micromap answers where it knows. Checked builds throw a
+/// std::logic_error if the any-hit call would say something else.
+template <class Slab>
+[[gnu::noinline]] bool triangle_is_solid(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found) {
+  if (accel.micromaps == nullptr || accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0)
+    return any_hit_accepts(accel, ray, found);
+  ++ray.counts->micromap_lookups;
+  const scene::OpacityState state = accel.micromaps->state(found.instance, found.primitive, found.u, found.v);
+  if (state == scene::OpacityState::kUnknown) return any_hit_accepts(accel, ray, found);
+  ++ray.counts->micromap_known;
+  const bool solid = state == scene::OpacityState::kOpaque;
+  if (kChecksMicromaps &&
+      solid != accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v))
+    throw std::logic_error("an opacity micromap has another answer than the any-hit call");
+  return solid;
 }
 
 /// Reports a hit of a ray that looks for all of them, or offers it to the buffer of one that looks for several: true,
@@ -51,7 +75,7 @@ template <class Slab>
 /// The flags of rays with which a triangle that is met may be no closest hit after all, and triangle_accepts() decides.
 inline constexpr std::uint32_t kFlagsThatDecide = kRayCullBack | kRayCullFront | kRayAll | kRayNearest;
 
-/// any_hit_accepts() and reported() for a triangle, given in the local space, that may be non-opaque or may show a
+/// triangle_is_solid() and reported() for a triangle, given in the local space, that may be non-opaque or may show a
 /// culled side. glTF flips the winding of instances that mirror, so the front is the same side as in model space.
 template <class Slab>
 [[gnu::noinline]] bool triangle_accepts(const Accel& accel, bool calls_any_hit, const std::array<Vec3, 3>& triangle,
@@ -61,7 +85,7 @@ template <class Slab>
     if (((culls & kRayCullBack) != 0 && facing < 0) || ((culls & kRayCullFront) != 0 && facing > 0)) return false;
   }
   const std::uint64_t calls = ray.counts->any_hit_calls;
-  if (calls_any_hit && !any_hit_accepts(accel, ray, found)) return false;
+  if (calls_any_hit && !triangle_is_solid(accel, ray, found)) return false;
   return !reported(accel, ray, found, ray.counts->any_hit_calls > calls);
 }
 

@@ -10,6 +10,7 @@
 #include "accel/structure/group_placement.h"
 #include "accel/structure/guest_shapes.h"
 #include "accel/structure/merged_meshes.h"
+#include "accel/structure/micromap_places.h"
 #include "accel/structure/node.h"
 #include "accel/structure/partition.h"
 #include "accel/structure/tree_pieces.h"
@@ -19,6 +20,7 @@
 #include "core/types/any_hit.h"
 #include "core/types/hit_sink.h"
 #include "core/types/nearest_sink.h"
+#include "scene/model/opacity_micromaps.h"
 
 namespace carousel::accel {
 
@@ -57,7 +59,9 @@ struct Accel {
   std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`
   std::shared_ptr<const TreePieces> pieces;    ///< null: the tree is not cut (`bvh.treelets`)
   const AnyHit* any_hit = nullptr;  ///< answers any-hit calls, set before tracing; null: every surface is opaque
-  HitSink* all_hits = nullptr;      ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
+  const scene::OpacityMicromaps* micromaps = nullptr;  ///< asked before `any_hit`, set with it; may be null
+  MicromapPlaces micromap_places;                      ///< bytes of the micromaps, by block; empty without
+  HitSink* all_hits = nullptr;  ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   NearestSink* nearest_hits = nullptr;  ///< takes the hits of rays that look for several, set before tracing; or null
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it
   bool procedural_primitives = false;   ///< there are some

@@ -20,11 +20,15 @@ inline std::uint32_t node_bytes(const Accel& accel, const BvhConfig& bvh) {
   return static_cast<std::uint32_t>(sizeof(Node) - sizeof(Node::plane) + accel.elements.node_bytes());
 }
 
-/// Bytes that stand behind a node: its children's cull planes, and the primitives that it holds itself.
+/// Bytes that stand behind a node: its children's cull planes, and the primitives that it holds itself, with their
+/// micromaps.
 inline std::uint32_t bytes_behind(const Accel& accel, const Node& node) {
   std::uint64_t bytes = plane_bytes(node, accel.shared_normals);
   for (int lane = 0; lane < node.count; ++lane)
-    if (node.direct >> lane & 1) bytes += accel.held_leaf(node, lane).blocks() * sizeof(TriangleBlock);
+    if (node.direct >> lane & 1) {
+      const NodeRef leaf = accel.held_leaf(node, lane);
+      bytes += leaf.blocks() * sizeof(TriangleBlock) + accel.micromap_places.of(leaf);
+    }
   return static_cast<std::uint32_t>(bytes);
 }
 

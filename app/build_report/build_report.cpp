@@ -92,6 +92,21 @@ report::Structure structure(const Prepared& p) {
   return out;
 }
 
+report::Micromaps micromaps(const scene::OpacityMicromaps& maps, const IntersectionCounts& tests) {
+  report::Micromaps out;
+  out.bytes = maps.size_bytes();
+  out.maps = maps.maps();
+  out.map_bytes = maps.map_bytes();
+  out.micro_triangles_each = maps.grid.count();
+  out.triangles = {maps.opaque, maps.transparent, maps.unknown};
+  out.micro_triangles = {maps.micro_opaque, maps.micro_transparent, maps.micro_unknown};
+  out.lookups = tests.micromap_lookups;
+  out.calls_saved = tests.micromap_known;
+  out.calls = tests.any_hit_calls;
+  out.saved_share = ratio(out.calls_saved, out.calls_saved + out.calls);
+  return out;
+}
+
 report::Host host(const Prepared& p, const ringbus::RunResult& result) {
   report::Host out;
   out.threads = result.threads;
@@ -168,6 +183,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
             result.rays_restarted, result.paths_restarted, {emitted[0], emitted[1], emitted[2]}};
   if (!result.resources.empty()) {
     add_ring(r, result, config, prepared.accel);
+    if (prepared.micromaps) r.micromaps = micromaps(*prepared.micromaps, r.tests->counts);
     add_links(r, result, config);
     r.drawing = drawing(config.topology, true);
   }

@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "accel/builders/build.h"
+#include "accel/builders/place_micromaps.h"
 #include "accel/planes/cull_planes.h"
 #include "accel/traverse/kernels.h"
 #include "app/area/machine_area.h"
@@ -30,6 +31,7 @@
 #include "scene/model/instance_overlap.h"
 #include "scene/moment.h"
 #include "shading/effects/effects_plan.h"
+#include "shading/surface/opacity_states.h"
 
 namespace carousel::app {
 
@@ -152,6 +154,19 @@ accel::StructureSize whole_structure(const accel::StructureSize& share, ringbus:
     sum.surface_cost += other.surface_cost;
   }
   return sum;
+}
+
+void make_micromaps(Prepared& p) {
+  const BvhConfig::Micromaps& c = p.config().bvh.micromaps;
+  if (c.states == BvhConfig::Micromaps::States::kNone) return;
+  Phase phase("micromaps");
+  if (p.micromaps == nullptr)  // they are of textures, and stay when triangles move
+    p.micromaps = std::make_unique<scene::OpacityMicromaps>(
+        shading::make_micromaps(p.scene, static_cast<int>(c.level), c.states == BvhConfig::Micromaps::States::kFour));
+  p.accel.micromaps = p.micromaps.get();
+  p.accel.micromap_places = accel::place_micromaps(p.accel, *p.micromaps);
+  phase.result(
+      fmt::format("{} triangles with a map, {}", p.micromaps->maps(), report::bytes_text(p.micromaps->size_bytes())));
 }
 
 void build_accel(Prepared& p, ringbus::Transport* transport) {
@@ -309,6 +324,7 @@ void renew_any_hit(Prepared& p) {
   p.alpha_test.reset();
   if (p.accel.has_non_opaque) p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
   p.accel.any_hit = p.alpha_test.get();
+  if (p.accel.has_non_opaque) make_micromaps(p);
 }
 
 scene::View view_of(const Config& config) {

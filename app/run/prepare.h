@@ -37,8 +37,9 @@ struct Prepared {
   scene::Scene& scene = *scene_storage;  ///< keeps its address when the object is moved, since others refer to it
   std::vector<std::string> warnings;     ///< warnings of the import
   accel::Accel accel;
-  std::optional<accel::StructureSize> structure;   ///< size of all ranks' shares; absent where all of it is here
-  std::unique_ptr<shading::AlphaTest> alpha_test;  ///< any-hit calls of `accel`; null if every material is opaque
+  std::optional<accel::StructureSize> structure;       ///< size of all ranks' shares; absent where all of it is here
+  std::unique_ptr<shading::AlphaTest> alpha_test;      ///< any-hit calls of `accel`; null if every material is opaque
+  std::unique_ptr<scene::OpacityMicromaps> micromaps;  ///< of `accel`; null without bvh.micromaps or opaque throughout
   std::unique_ptr<AllHits> all_hits;          ///< with rays.query: all, or nearest, those of a file's rays; else null
   std::unique_ptr<NearestHits> nearest_hits;  ///< with rays.query.nearest those of `accel`; else null
   double scene_seconds = 0, build_seconds = 0, plane_seconds = 0;

@@ -117,6 +117,8 @@ constexpr Row kRows[] = {
     {"bvh.quality", kBuiltHere},
     {"bvh.duplicates", kBuiltHere},
     {"bvh.duplicates", kSpaceIsCut},
+    {"bvh.micromaps", kAnyHit},
+    {"bvh.micromaps.level", kMicromaps},
     {"bvh.leaves", kCycle},
     {"accuracy.spawn", kPicture},
     {"accuracy.transform", kTransforms},
@@ -156,6 +158,7 @@ constexpr Row kRows[] = {
     {"testers.transform", kCycle},
     {"testers.procedural", kCycle},
     {"testers.any_hit_unit", kCycle},
+    {"testers.micromap_unit", kCycle},
     {"testers.hit_buffer", kCycle},
     {"testers.simd", kCycle},
     {"testers.simd.map", kVectors},
@@ -313,6 +316,8 @@ constexpr const Condition* condition_of(UnitKind kind) {
       return &kProcedural;
     case UnitKind::kAnyHit:
       return &kAnyHitUnits;
+    case UnitKind::kMicromap:
+      return &kMicromaps;
     case UnitKind::kHitBuffer:
       return &kNearest;
     default:  // every scene puts the others to use

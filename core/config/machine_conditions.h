@@ -49,6 +49,9 @@ constexpr bool has_planes(const C& c, const S& s) {
 constexpr bool asks_units(const C& c, const S& s) {
   return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kInline;
 }
+constexpr bool has_micromaps(const C& c) {
+  return c.bvh.micromaps.states != BvhConfig::Micromaps::States::kNone;
+}
 constexpr bool is_generated(const C& c, BuiltinScene scene) {
   return c.scene.builtin == scene;
 }
@@ -127,7 +130,8 @@ inline constexpr Condition kSeededScene{
 inline constexpr Condition kSizedScene{[](const C& c, const S&) {
                                          return is_generated(c, BuiltinScene::kSpheres) ||
                                                 is_generated(c, BuiltinScene::kTerrain) ||
-                                                is_generated(c, BuiltinScene::kSliver);
+                                                is_generated(c, BuiltinScene::kSliver) ||
+                                                is_generated(c, BuiltinScene::kFoliage);
                                        },
                                        "the scene has as many triangles as it has"};
 inline constexpr Condition kInstances{[](const C& c, const S&) { return is_generated(c, BuiltinScene::kInstances); },
@@ -238,6 +242,8 @@ inline constexpr Condition kAnyHitUnits{asks_units, "no units decide any-hit cal
 inline constexpr Condition kAnyHitShaders{
     [](const C& c, const S& s) { return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kShader; },
     "no shader worker decides any-hit calls"};
+inline constexpr Condition kMicromaps{[](const C& c, const S& s) { return s.any_hit && has_micromaps(c); },
+                                      "there are no opacity micromaps"};
 inline constexpr Condition kVectors{[](const C& c, const S&) { return any_testers(c, has_many_lanes); },
                                     "units have one lane"};
 

@@ -9,7 +9,7 @@ namespace carousel {
 struct IntersectionCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
   std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0, exact_volumes = 0, refined = 0, transforms_in_double = 0;
-  std::uint64_t full_inversions = 0, extra_box_hits = 0, buffer_steps = 0;
+  std::uint64_t full_inversions = 0, extra_box_hits = 0, micromap_lookups = 0, micromap_known = 0, buffer_steps = 0;
 
   static constexpr auto counters() {
     using C = IntersectionCounts;
@@ -42,6 +42,12 @@ struct IntersectionCounts {
         Counter{"any_hit", &C::any_hit_calls, "tests",
                 "any-hit calls: lookups of the opacity of a primitive that is not opaque; only if the scene has any",
                 Shown::kAnyHit},
+        Counter{"micromap", &C::micromap_lookups, "tests",
+                "lookups in the opacity micromap of a triangle that is not opaque; only with bvh.micromaps",
+                Shown::kMicromaps},
+        Counter{"micromap_known", &C::micromap_known, "tests",
+                "those of the lookups that found opaque or transparent: any-hit calls that were saved",
+                Shown::kMicromaps},
         Counter{"buffer_steps", &C::buffer_steps, "steps",
                 "comparisons of a hit with those in a ray's sorted buffer, each with a shift, with rays.query.nearest",
                 Shown::kNearest},

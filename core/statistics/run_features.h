@@ -14,13 +14,14 @@ enum class Shown : std::uint8_t {
   kAnyHit,      ///< runs whose scene has primitives that are not opaque
   kAnyHitUnit,  ///< runs that look up the opacity of such primitives in units beside the testers
   kQuantised,   ///< runs with quantised nodes
+  kMicromaps,   ///< runs that look primitives that are not opaque up in opacity micromaps first
   kNearest,     ///< runs whose rays look for several nearest hits
 };
 
 /// The features of a machine and its scene that decide which numbers its report shows.
 struct RunFeatures {
   bool cull_planes = false, bundles = false, procedural = false, any_hit = false, any_hit_units = false,
-       quantised = false, nearest = false;
+       quantised = false, micromaps = false, nearest = false;
 
   constexpr bool show(Shown shown) const {
     switch (shown) {
@@ -40,6 +41,8 @@ struct RunFeatures {
         return any_hit_units;
       case Shown::kQuantised:
         return quantised;
+      case Shown::kMicromaps:
+        return micromaps;
       case Shown::kNearest:
         return nearest;
     }

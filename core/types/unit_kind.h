@@ -19,7 +19,17 @@ namespace carousel {
 // kPrimitive also needs its place in the order of the tests, in ringbus/cycle/testers/tester.h.
 
 /// A kind of test unit that a resource has.
-enum class UnitKind : std::uint8_t { kBox, kTriangle, kPlane, kBundle, kTransform, kProcedural, kAnyHit, kHitBuffer };
+enum class UnitKind : std::uint8_t {
+  kBox,
+  kTriangle,
+  kPlane,
+  kBundle,
+  kTransform,
+  kProcedural,
+  kAnyHit,
+  kMicromap,
+  kHitBuffer
+};
 
 /// The place of a kind in the order of a visit's tests.
 enum class Stage : std::uint8_t {
@@ -27,6 +37,7 @@ enum class Stage : std::uint8_t {
   kTransform,  ///< then the rays that are left go to model space
   kNode,       ///< at a node, boxes and planes
   kPrimitive,  ///< at a leaf, primitives of all kinds side by side
+  kMicromap,   ///< then the opacity micromaps of the triangles that are hit
   kAnyHit,     ///< then the opacity of the primitives that are hit
   kHitBuffer,  ///< then hits are put into the sorted buffers of rays
 };
@@ -63,6 +74,9 @@ inline constexpr auto kUnitKinds = std::to_array<UnitKindRow>({
     {UnitKind::kAnyHit, "any_hit_unit", "any_hit", "any_hit_lookups",
      "Units that decide if a non-opaque primitive is hit, with any_hit: inline.", 1, 1, 8,
      &IntersectionCounts::any_hit_calls, Stage::kAnyHit, Shown::kAnyHitUnit},
+    {UnitKind::kMicromap, "micromap_unit", "micromap", "micromap_lookups",
+     "Units that look a hit up in the opacity micromap of its triangle.", 1, 1, 3,
+     &IntersectionCounts::micromap_lookups, Stage::kMicromap, Shown::kMicromaps},
     {UnitKind::kHitBuffer, "hit_buffer", "hit_buffer", "hit_buffer_steps",
      "Units that put hits into the sorted buffers of rays, a comparison and a shift a step.", 1, 1, 1,
      &IntersectionCounts::buffer_steps, Stage::kHitBuffer, Shown::kNearest},

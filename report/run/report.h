@@ -29,6 +29,7 @@
 #include "report/sections/structure/cull_planes.h"
 #include "report/sections/structure/frames.h"
 #include "report/sections/structure/levels.h"
+#include "report/sections/structure/micromaps.h"
 #include "report/sections/structure/nodes.h"
 #include "report/sections/structure/structure.h"
 #include "report/sections/tests.h"
@@ -63,6 +64,7 @@ struct Report {
   std::optional<Nodes> nodes;
   std::optional<Structure> structure;
   std::optional<Levels> levels;
+  std::optional<Micromaps> micromaps;
   std::optional<CullPlanes> cull_planes;
   std::optional<Nearest> nearest;
   std::optional<Packets> packets;
@@ -124,6 +126,7 @@ void describe(V& v, const Report& r) {
   v.section("nodes", r.nodes, "nodes of the structure by depth; absent where single rays go down without packets");
   v.section("structure", r.structure, "structures over meshes, when there are rays");
   v.section("levels", r.levels, "instances of instances, when the structure has more than two levels");
+  v.section("micromaps", r.micromaps, "opacity micromaps and the any-hit calls that they save, with bvh.micromaps");
   v.section("cull_planes", r.cull_planes, "size of the cull planes and work that they spare, when there are any");
   v.section("nearest", r.nearest, "rays that look for several hits and what these cost, with rays.query.nearest");
   v.section("packets", r.packets, "packets of all resources");

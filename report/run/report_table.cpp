@@ -364,6 +364,10 @@ std::string report_table(const Report& report) {
                report.bound->classes.front().name, percent(report.bound->reached));
   if (report.energy && report.area) energy_lines(table, report);
   if (report.tests) test_line(table, *report.tests);
+  if (const auto& maps = report.micromaps)
+    table.line("micromaps", "{}   {} maps of {} micro-triangles   {} of {} any-hit calls saved",
+               bytes_text(maps->bytes), grouped(maps->maps), grouped(maps->micro_triangles_each),
+               grouped(maps->calls_saved), grouped(maps->calls_saved + maps->calls));
   if (report.cull_planes) cull_plane_lines(table, report);
   if (report.nearest) nearest_line(table, *report.nearest);
   packet_lines(table, report);

@@ -212,6 +212,10 @@ void test_words(Words& w) {
       .item("N of N rays", "tests.bundles.formed", "bundles formed, and the rays of a bundle when formed")
       .item("of their boxes N all hit, N all missed, N split", "tests.bundles.sum",
             "parts of the bundles' tests by their outcome: all rays hit the box, none does, or the bundle splits");
+  w.line("micromaps")
+      .item("N", "micromaps.bytes")
+      .item("N maps of N micro-triangles", "micromaps.maps")
+      .item("N of N any-hit calls saved", "micromaps.calls_saved");
   w.line("cull planes")
       .item("N planes, N bytes a node, found in N", "cull_planes.planes",
             "size of the cull planes, and time to find them")

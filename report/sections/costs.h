@@ -86,7 +86,11 @@ struct EnergyParts {
 
 template <class V>
 void describe(V& v, const EnergyParts& r) {
-  for (const UnitKindRow& row : kUnitKinds) v.section(row.work, r.units[row.kind], row.meaning);
+  for (const UnitKindRow& row : kUnitKinds)
+    if (row.kind == UnitKind::kMicromap)  // reports from before there were any have none
+      v.section_if(r.units[row.kind].events > 0, row.work, r.units[row.kind], row.meaning);
+    else
+      v.section(row.work, r.units[row.kind], row.meaning);
   constexpr auto kOwnCaches = static_cast<std::size_t>(EnergyPart::kL1);
   for (std::size_t i = 0; i < kEnergyParts.size(); ++i)
     if (i == kOwnCaches)

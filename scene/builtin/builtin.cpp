@@ -30,6 +30,8 @@ Scene make_builtin(const SceneConfig& config) {
       return make_instances(checked_count(config.instances, "scene.instances"), config.seed, config.levels, seconds);
     case BuiltinScene::kSliver:
       return make_sliver(triangles(), config.seed);
+    case BuiltinScene::kFoliage:
+      return make_foliage(triangles(), config.seed);
   }
   throw ConfigError("scene.builtin", "unknown built-in scene");
 }

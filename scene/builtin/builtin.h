@@ -25,6 +25,10 @@ Scene make_instances(std::int64_t instances, std::int64_t seed, std::int64_t lev
 /// A burst of needles, `triangles` of them, length over width from 10 to 100,000.
 Scene make_sliver(std::int64_t triangles, std::int64_t seed);
 
+/// Nine trees on a meadow with one crown of about `triangles`: leaf cards, two each, whose alpha texture cuts the
+/// leaves out of them.
+Scene make_foliage(std::int64_t triangles, std::int64_t seed);
+
 /// The scene `config.builtin` names (which must be set), with its own sky; `config.sky` is not looked at.
 /// Throws ConfigError when a count is outside [1, 2^28].
 Scene make_builtin(const SceneConfig& config);

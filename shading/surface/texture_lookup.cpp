@@ -8,9 +8,6 @@
 
 namespace carousel::shading {
 
-namespace {
-
-/// The texel a whole coordinate falls on.
 std::uint32_t wrapped(std::int64_t i, std::int64_t size, scene::Wrap wrap) {
   switch (wrap) {
     case scene::Wrap::kClamp:
@@ -26,6 +23,8 @@ std::uint32_t wrapped(std::int64_t i, std::int64_t size, scene::Wrap wrap) {
   const std::int64_t m = i % size;
   return static_cast<std::uint32_t>(m < 0 ? m + size : m);
 }
+
+namespace {
 
 Vec3 texel(const scene::Image& image, std::uint32_t x, std::uint32_t y, Encoding encoding) {
   const std::uint8_t* p = image.rgba.data() + 4 * (std::size_t{y} * image.width + x);

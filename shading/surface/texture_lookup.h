@@ -13,6 +13,9 @@ enum class Encoding : std::uint8_t { kLinear, kSrgb };
 /// KHR_texture_transform: offset + R(rotation) * (scale * uv).
 Vec2 transform_uv(const scene::TextureUse& use, const Vec2& uv);
 
+/// The texel that a whole coordinate falls on, of `size` texels.
+std::uint32_t wrapped(std::int64_t i, std::int64_t size, scene::Wrap wrap);
+
 /// Filtered RGB at transformed texture coordinates; (0, 0) is the top left of the image. Bilinear or nearest
 /// by the texture's sampler, between texel centres, on linear values. An image without pixels is white;
 /// coordinates that are not finite read its first texel.

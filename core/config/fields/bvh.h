@@ -15,6 +15,10 @@ struct BvhConfig {
   struct Treelets {
     std::int64_t bytes = 0;
   } treelets;
+  struct Micromaps {
+    enum class States { kNone, kTwo, kFour } states = States::kNone;
+    std::int64_t level = 4;
+  } micromaps;
   enum class Elements { kBoxes, kSpheres, kOrientedBoxes } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
   enum class Storage { kFull, kQuantised } storage = Storage::kFull;
@@ -32,6 +36,12 @@ template <>
 inline constexpr auto kEnumNames<BvhConfig::Elements> = [] {
   using enum BvhConfig::Elements;
   return names<BvhConfig::Elements>({{kBoxes, "boxes"}, {kSpheres, "spheres"}, {kOrientedBoxes, "oriented_boxes"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<BvhConfig::Micromaps::States> = [] {
+  using enum BvhConfig::Micromaps::States;
+  return names<BvhConfig::Micromaps::States>({{kNone, "none"}, {kTwo, "two"}, {kFour, "four"}});
 }();
 
 template <>
@@ -72,6 +82,17 @@ void describe(V& v, BvhConfig::Treelets& c) {
           "The whole tree is cut into connected pieces of at most this size, stored one after another, and rays gather "
           "at pieces: a visit loads a piece once and takes its rays through it depth first. A node or leaf that is "
           "larger is a piece by itself. With 0 rays gather at nodes.");
+}
+
+template <class V>
+void describe(V& v, BvhConfig::Micromaps& c) {
+  v.choice(
+      "states", c.states,
+      "The states of a micro-triangle: with four also unknown, for which the any-hit call decides; with two opaque "
+      "or transparent only, so that a triangle has a micromap only where all of its micro-triangles are known. "
+      "With none there are no micromaps.");
+  v.field("level", c.level, IntRange{0, 6}, "levels",
+          "How often a triangle is divided into four, so that it has 4^level micro-triangles.");
 }
 
 template <class V>
@@ -117,6 +138,8 @@ void describe(V& v, BvhConfig& c) {
       "quality", c.quality,
       "Meshes are divided once, from the top; or subtrees are then moved to where the areas of all boxes add up to "
       "less, which takes several times as long to build, and less to traverse where triangles are long.");
+  v.section("micromaps", c.micromaps,
+            "Opacity micromaps of the triangles that are not opaque, made from their textures and stored with them.");
   v.field("file", c.file, "",
           "A file of trees over the meshes, which takes the place of building them (docs/how-it-works/builders.md). "
           "Its path is "

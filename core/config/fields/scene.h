@@ -9,7 +9,7 @@
 
 namespace carousel {
 
-enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver };
+enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver, kFoliage };
 template <>
 inline constexpr auto kEnumNames<BuiltinScene> = [] {
   using enum BuiltinScene;
@@ -17,7 +17,8 @@ inline constexpr auto kEnumNames<BuiltinScene> = [] {
                               {kSpheres, "spheres"},
                               {kTerrain, "terrain"},
                               {kInstances, "instances"},
-                              {kSliver, "sliver"}});
+                              {kSliver, "sliver"},
+                              {kFoliage, "foliage"}});
 }();
 
 /// True for a generated scene that is another one at another time.

@@ -22,6 +22,7 @@ class MemoryRules {
     quality_fits();
     shared_caches_fit();
     travelling_rays_fit();
+    micromaps_fit();
     caches_have_whole_sets();
     master_copies_fit();
     if (c.memory.dram.preset == DramConfig::Preset::kPipe) return;
@@ -56,6 +57,23 @@ class MemoryRules {
     if (c.accuracy.box != BoxLevel::kConservative)
       breach_("accuracy.box", fmt::format("larger boxes could add hits to those of {}; expected conservative{}",
                                           enum_name(c.accuracy.box), without));
+  }
+
+  // Micromaps stand behind their triangles, in leaves that are all here when they are made.
+  void micromaps_fit() {
+    if (c.bvh.micromaps.states == BvhConfig::Micromaps::States::kNone) return;
+    constexpr std::string_view without = ", or bvh.micromaps.states: none";
+    if (c.bvh.leaves != BvhConfig::Leaves::kTriangles)
+      breach_("bvh.leaves",
+              fmt::format("strips of triangles have no room for micromaps; expected triangles{}; found {}", without,
+                          enum_name(c.bvh.leaves)));
+    if (c.bvh.treelets.bytes > 0)
+      breach_("bvh.treelets.bytes",
+              fmt::format("the tree is cut into treelets before there are micromaps; expected 0{}; found {}", without,
+                          c.bvh.treelets.bytes));
+    if (c.scene.placement != ScenePlacement::kReplicated)
+      breach_("scene.placement",
+              fmt::format("micromaps are not taken apart; expected replicated{}; found partitioned", without));
   }
 
   // A strip of triangles is decoded as a whole.

@@ -36,8 +36,9 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
 /// nodes have 64 or 80 bytes, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and
-/// each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips. With `bvh.treelets` nodes and leaves
-/// stand where their pieces say (accel::TreePieces).
+/// each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips. A leaf has the micromaps of its
+/// triangles in it, each behind its triangle, so that whoever reads the triangle reads them. With `bvh.treelets` nodes
+/// and leaves stand where their pieces say (accel::TreePieces).
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
@@ -67,7 +68,8 @@ class ShapeMemory {
     ShapeSpan span = room(key);
     if (most_leaf_ == 0) return span;
     if (!key.ref.is_inner()) {
-      if (!strips_.holds(key.ref) && !quantised_) span.bytes = key.ref.triangles() * kPrimitiveBytes;
+      if (!strips_.holds(key.ref) && !quantised_)
+        span.bytes = key.ref.triangles() * kPrimitiveBytes + accel_.micromap_places.of(key.ref);
       span.most = most_leaf_;
     } else if (most_node_ > 0) {
       if (span.bytes == node_bytes_) span.bytes = accel_.nodes[key.ref.node()].count * (node_bytes_ / accel::kMaxWidth);
@@ -84,8 +86,15 @@ class ShapeMemory {
     if (std::popcount(lanes) != 1) return strip(key);
     const ShapeSpan whole = room(key);
     const int lane = std::countr_zero(lanes);
-    if (!key.ref.is_inner())
-      return {whole.address + static_cast<std::uint64_t>(lane) * kPrimitiveBytes, kPrimitiveBytes};
+    if (!key.ref.is_inner()) {
+      const std::uint32_t block = key.ref.first_block(), at = static_cast<std::uint32_t>(lane);
+      const auto maps = [&](std::uint32_t place) {
+        return static_cast<std::uint32_t>(accel_.micromap_places.before(block, place) -
+                                          accel_.micromap_places.before(block));
+      };
+      return {whole.address + std::uint64_t{at} * kPrimitiveBytes + maps(at),
+              kPrimitiveBytes + maps(at + 1) - maps(at)};
+    }
     std::uint32_t before = 0;
     for (int l = 0; l < lane; ++l) before += child_bytes(key.ref.node(), l);
     const std::uint32_t bytes = std::min(child_bytes(key.ref.node(), lane), whole.bytes);
@@ -142,11 +151,13 @@ class ShapeMemory {
       return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
     }
     if (strips_.holds(key.ref)) return {blocks_at_ + strips_.begin(key.ref), strips_.bytes(key.ref)};
+    const std::uint64_t begin = blocks_at_ + accel_.micromap_places.before(key.ref.first_block());
+    const std::uint32_t maps = accel_.micromap_places.of(key.ref);
     if (quantised_)
-      return {blocks_at_ + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
-              key.ref.triangles() * kQuantisedLeafBytes};
-    return {blocks_at_ + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
-            key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock))};
+      return {begin + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
+              key.ref.triangles() * kQuantisedLeafBytes + maps};
+    return {begin + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
+            key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock)) + maps};
   }
   std::uint32_t bytes_in_piece(accel::NodeRef ref) const {
     if (!ref.is_inner())
@@ -180,14 +191,15 @@ class ShapeMemory {
   /// Fills in primitives_before_ where each primitive has a leaf's bytes for itself; the bytes in all.
   std::uint64_t bytes_of_leaves() {
     if (strips_.bytes() > 0) return strips_.bytes();
-    if (!quantised_) return accel_.blocks.size() * sizeof(accel::TriangleBlock);
+    const std::uint64_t maps = accel_.micromap_places.all();
+    if (!quantised_) return accel_.blocks.size() * sizeof(accel::TriangleBlock) + maps;
     std::uint32_t primitives = 0;
     primitives_before_.reserve(accel_.blocks.size());
     for (const accel::TriangleBlock& block : accel_.blocks) {
       primitives_before_.push_back(primitives);
       for (const std::uint32_t primitive : block.primitive) primitives += primitive != accel::kNoPrimitive;
     }
-    return std::uint64_t{primitives} * kQuantisedLeafBytes;
+    return std::uint64_t{primitives} * kQuantisedLeafBytes + maps;
   }
 
   /// Members of one placement of a group stand one behind the other, so that the first tells where all are.
@@ -207,8 +219,11 @@ class ShapeMemory {
     std::uint32_t bytes = node_bytes_ / accel::kMaxWidth;
     if (node.plane_counts != 0)
       bytes += static_cast<std::uint32_t>(accel::plane_count(node, lane)) * std::uint32_t{sizeof(accel::CullPlane)};
-    if (node.direct >> lane & 1)
-      bytes += accel_.held_leaf(node, lane).blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock));
+    if (node.direct >> lane & 1) {
+      const accel::NodeRef leaf = accel_.held_leaf(node, lane);
+      bytes +=
+          leaf.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock)) + accel_.micromap_places.of(leaf);
+    }
     return bytes;
   }
   /// Fills in behind_before_; the bytes in all.

@@ -9,7 +9,7 @@
 namespace carousel::ringbus::cycle {
 
 /// The way of a single ray through units of each kind (core/types/unit_kind.h): to model space, then boxes and planes,
-/// beside primitives of all kinds, their opacity and the sorted buffers of hits.
+/// beside primitives of all kinds, their micromaps, their opacity and the sorted buffers of hits.
 struct RayStages {
   CullPlanesConfig::Order order = CullPlanesConfig::Order::kBoxFirst;
   bool inline_any_hit = true;
@@ -24,7 +24,8 @@ struct RayStages {
     Cycle met = moved;
     for (const UnitKindRow& row : kUnitKinds)
       if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, moved));
-    const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, met) : met;
+    const Cycle known = beside(UnitKind::kMicromap, met);
+    const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, known) : known;
     return std::max(boxed, beside(UnitKind::kHitBuffer, seen));
   }
 };

@@ -226,8 +226,10 @@ class Tester {
       const UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, of));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
+    const UnitBank::Reservation known =
+        tested(banks_[UnitKind::kMicromap], met, starts(UnitKind::kMicromap, counts, of));
     const UnitBank::Reservation seen =
-        tested(banks_[UnitKind::kAnyHit], met, starts(UnitKind::kAnyHit, lookups(counts), of));
+        tested(banks_[UnitKind::kAnyHit], known, starts(UnitKind::kAnyHit, lookups(counts), of));
     return tested(banks_[UnitKind::kHitBuffer], seen, starts(UnitKind::kHitBuffer, counts, of)).last;
   }
   /// Any-hit calls that units of the resource answer.

@@ -118,6 +118,10 @@ TEST_F(TerminalTable, IsExplainedForSpecialParts) {
   const std::string base = std::string(kSmall) + kCycle;
   EXPECT_TRUE(explained(base + "bundles: {size: 8}\n").contains("bundles"));
   EXPECT_TRUE(explained(base + "prefetcher: {lines: 2}\nenergy: {profile: n7}\n").contains("prefetcher"));
+  EXPECT_TRUE(explained("scene: {builtin: foliage, triangles: 60}\nimage: {width: 12, height: 8, samples: 1}\n"
+                        "topology: {resources: 2}\nbvh: {micromaps: {states: four}}\n" +
+                        std::string(kCycle))
+                  .contains("micromaps"));
   EXPECT_TRUE(explained(base + "cull_planes: {count: 2}\nprimary: raster\n").contains("cull planes"));
   EXPECT_TRUE(explained(base + "verify: effects\n").contains("all effects"));
   EXPECT_TRUE(explained(base + "verify: reference\nfaults: {links: {drop: 0.05}, compare: true}\n").contains("faults"));

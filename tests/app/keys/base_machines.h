@@ -13,6 +13,7 @@ enum class BaseMachine {
   kTerrain,
   kInstances,
   kLayers,      ///< non-opaque surfaces, a clearcoat, two cameras
+  kFoliage,     ///< surfaces that a texture cuts out
   kProcedural,  ///< procedural primitives
   kCornell,     ///< rays at the edges of boxes, eight copies of each
   kPlanes,      ///< with cull planes
@@ -40,6 +41,8 @@ inline std::string text(BaseMachine machine) {
       return instances + slots + cycle;
     case BaseMachine::kLayers:
       return "scene: {file: layers.gltf}\n" + slots + cycle;
+    case BaseMachine::kFoliage:
+      return "scene: {builtin: foliage, triangles: 60}\n" + slots + cycle;
     case BaseMachine::kProcedural:
       return "scene: {builtin: spheres, triangles: 400, procedural: true}\n" + slots + cycle;
     case BaseMachine::kCornell:

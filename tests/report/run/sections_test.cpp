@@ -35,7 +35,7 @@ TEST(ReportSections, EveryKindOfUnitStandsUnderItsName) {
   }
   // The order of the table of unit kinds.
   EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural",
-                                                  "any_hit", "dispatch_busy", "dispatch_idle"}));
+                                                  "any_hit", "micromap", "dispatch_busy", "dispatch_idle"}));
 }
 
 TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
@@ -53,10 +53,10 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
     EXPECT_EQ(with[row.name]["per_ray"], static_cast<double>(count++) / 4) << row.name;
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
-  EXPECT_EQ(keys(with),
-            (std::vector<std::string>{"box", "plane", "triangle", "refined", "bundle", "transforms",
-                                      "transforms_in_double", "inversions", "full_inversions", "exact_volumes",
-                                      "extra_box_hits", "culled", "procedural", "any_hit", "ray_reads"}));
+  EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "plane", "triangle", "refined", "bundle", "transforms",
+                                                  "transforms_in_double", "inversions", "full_inversions",
+                                                  "exact_volumes", "extra_box_hits", "culled", "procedural", "any_hit",
+                                                  "micromap", "micromap_known", "ray_reads"}));
 }
 
 TEST(ReportSections, DerivedNumbersAreOfTheCounters) {

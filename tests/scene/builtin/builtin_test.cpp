@@ -13,8 +13,8 @@
 namespace carousel::scene {
 namespace {
 
-const BuiltinScene kAll[] = {BuiltinScene::kCornell, BuiltinScene::kSpheres, BuiltinScene::kTerrain,
-                             BuiltinScene::kInstances, BuiltinScene::kSliver};
+const BuiltinScene kAll[] = {BuiltinScene::kCornell,   BuiltinScene::kSpheres, BuiltinScene::kTerrain,
+                             BuiltinScene::kInstances, BuiltinScene::kSliver,  BuiltinScene::kFoliage};
 
 SceneConfig config_of(BuiltinScene kind) {
   SceneConfig config;

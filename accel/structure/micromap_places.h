@@ -1,0 +1,36 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "accel/structure/node.h"
+
+namespace carousel::accel {
+
+/// The bytes of opacity micromaps that stand behind the primitives of the blocks in the machine's memory, each behind
+/// its own.
+class MicromapPlaces {
+ public:
+  MicromapPlaces() = default;
+  /// `bytes` by place: kBlockTriangles a block.
+  explicit MicromapPlaces(const std::vector<std::uint32_t>& bytes) : before_(1, 0) {
+    before_.reserve(bytes.size() + 1);
+    for (const std::uint32_t own : bytes) before_.push_back(before_.back() + own);
+  }
+
+  /// Those behind all primitives before a place of a block.
+  std::uint64_t before(std::uint32_t block, std::uint32_t lane = 0) const {
+    return before_.empty() ? 0 : before_[std::size_t{block} * kBlockTriangles + lane];
+  }
+  /// Those behind the primitives of a leaf.
+  std::uint32_t of(NodeRef leaf) const {
+    if (before_.empty()) return 0;
+    return static_cast<std::uint32_t>(before(leaf.first_block() + leaf.blocks()) - before(leaf.first_block()));
+  }
+  std::uint64_t all() const { return before_.empty() ? 0 : before_.back(); }
+
+ private:
+  std::vector<std::uint64_t> before_;
+};
+
+}  // namespace carousel::accel
