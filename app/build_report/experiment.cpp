@@ -10,11 +10,13 @@
 #include "accel/builders/build.h"
 #include "accel/traverse/hit_oracle.h"
 #include "accel/traverse/verifying_workload.h"
+#include "app/area/machine_area.h"
 #include "app/build_report/build_report.h"
 #include "app/build_report/energy_report.h"
 #include "app/build_report/memory_report.h"
 #include "app/build_report/ring_sections.h"
 #include "app/build_report/traffic_report.h"
+#include "app/energy/power_meter.h"
 #include "app/host/log.h"
 #include "app/run/bottleneck.h"
 #include "app/run/counting_workload.h"
@@ -38,6 +40,7 @@
 #include "ringbus/cycle/traffic/ring_engine.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
 #include "ringbus/native/native_engine.h"
+#include "ringbus/results/run_features.h"
 #include "ringbus/time/machine_clocks.h"
 
 namespace carousel::app {
@@ -63,7 +66,8 @@ std::string run_text(const Config& config, const ringbus::RunResult& result) {
 
 ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& workload,
                             const InterruptScope& interrupt, bool quiet, const TraceFile* trace,
-                            ringbus::MemoryLog* memory, std::span<ringbus::PixelCost> heat, SeriesFrame* frame) {
+                            ringbus::MemoryLog* memory, std::span<ringbus::PixelCost> heat, SeriesFrame* frame,
+                            PowerMeter* power) {
   log_machine(p);
   Phase phase("run");
   CountingWorkload counting(workload);
@@ -73,6 +77,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.samples = static_cast<std::size_t>(p.config().report.samples);
   if (trace != nullptr) options.timeline = trace->wanted();
   options.memory = memory;
+  options.meter = power;
   options.ray_times = true;
   options.heat = heat;
   if (frame != nullptr) options.warm = {&frame->cached, 1};
@@ -84,6 +89,7 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   const auto line = show_rays(options, counting, job.first_rays(), "", quiet);
   const auto run = p.config().engine.kind == EngineKind::kCycle ? ringbus::run_cycle : ringbus::run_native;
   ringbus::RunResult result = run(p.config(), p.accel, p.scene_size(), counting, options);
+  if (power != nullptr && result.series) power->add_rows(*result.series);
   phase.result(run_text(p.config(), result));
   if (frame != nullptr && result.cycle) frame->cached = result.cycle->cached_lines;
   return result;
@@ -160,8 +166,12 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     places.emplace(census, job);
     if (memory == nullptr) memory = &requests;
   }
-  const ringbus::RunResult result =
-      simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt, quiet, trace, memory, heat, frame);
+  std::optional<PowerMeter> power;
+  if (p.config().engine.kind == EngineKind::kCycle && p.config().energy.profile != CostProfile::kNone)
+    power.emplace(p.config(), machine_area(p.config(), ringbus::scene_facts(p.accel)).link_mm,
+                  p.config().engine.clock_mhz);
+  const ringbus::RunResult result = simulate(p, job, places ? static_cast<Workload&>(*places) : census, interrupt,
+                                             quiet, trace, memory, heat, frame, power ? &*power : nullptr);
   if (p.nearest_hits) p.nearest_hits->judge_by(nullptr);
   if (job.ranks() != nullptr) {
     share_signal(*job.ranks());
@@ -175,6 +185,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   }
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
+  if (power && report.energy) report.energy->peak = power->peak();
   add_census(report, census, p.accel);
   if (result.complete && !heat.empty())
     report.heat = heat_section(heat, static_cast<std::uint32_t>(p.config().image.width));

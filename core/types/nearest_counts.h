@@ -17,6 +17,9 @@ struct NearestCounts {
   std::uint64_t read_bytes = 0, written_bytes = 0;
   std::uint64_t waiting_nodes = 0, waiting_hits = 0, waiting_bytes = 0, waiting_peak_bytes = 0;
 
+  /// All bytes that buffers, and what is set aside for them, have cost.
+  std::uint64_t moved_bytes() const { return read_bytes + written_bytes + waiting_bytes; }
+
   static constexpr auto counters() {
     using C = NearestCounts;
     return std::array{

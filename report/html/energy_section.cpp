@@ -80,6 +80,25 @@ Html parts_of(const Json& report, const Json& schema, const std::string& section
          shares.html() + table.html();
 }
 
+/// Curves of the energy in each sample of the time series.
+Html over_time(const Json& report) {
+  const Json* rows = find(report, "time_series.rows");
+  if (!rows) return {};
+  std::vector<std::string> parts;
+  for (const Json& row : *rows)
+    if (text_at(row, "unit") == "J") parts.push_back(text_at(row, "quantity"));
+  if (parts.empty()) return {};
+  return Figure{.id = "fig-energy-time",
+                .kind = "series",
+                .tables = "J",
+                .title = fmt::format("Energy over time: joules in each {} cycles",
+                                     value_text((*find(report, "time_series"))["interval"])),
+                .label = fmt::format("Curves over time: {}. The table of rows over time has least, mean and greatest.",
+                                     fmt::join(parts, ", ")),
+                .height = 340}
+      .html();
+}
+
 }  // namespace
 
 Html energy_section(const Json& report, const Json& schema) {
@@ -92,6 +111,14 @@ Html energy_section(const Json& report, const Json& schema) {
       number_at(report, "energy.nj_per_ray"), 1e3 * number_at(report, "energy.joules"),
       number_at(report, "energy.watts"), 1e-6 * number_at(report, "energy.rays_per_joule"),
       number_at(report, "area.mm2"), number_at(report, "area.mrays_per_second_per_mm2"));
+  if (find(report, "energy.peak"))
+    out += markup(
+        "<p>No thousand cycles that begin at a multiple of {} take more power than those from cycle {} on: {:.4g} W, "
+        "most of it ({:.0f} %) in {}. Those that begin elsewhere take {:.4g} W at most.</p>\n",
+        value_text(report["energy"]["peak"]["resolution"]), value_text(report["energy"]["peak"]["first_cycle"]),
+        number_at(report, "energy.peak.watts"), 100 * number_at(report, "energy.peak.part_share"),
+        words(text_at(report["energy"]["peak"], "part")), number_at(report, "energy.peak.watts_at_most"));
+  out += over_time(report);
   out += parts_of(report, schema, "energy", "joules", "Energy by part");
   out += parts_of(report, schema, "area", "mm2", "Area by part");
   if (const Json* costs = find(report, "costs"))

@@ -10,11 +10,12 @@ namespace carousel::report::html {
 
 namespace {
 
-/// Rows of the whole machine with the same unit share a chart.
+/// Rows of the whole machine with the same unit share a chart. Joules have theirs beside the energy of the run.
 std::map<std::string, std::vector<std::string>> charts_of(const Json& rows) {
   std::map<std::string, std::vector<std::string>> out;
   for (const Json& row : rows)
-    if (text_at(row, "part") == "machine") out[text_at(row, "unit")].push_back(text_at(row, "quantity"));
+    if (text_at(row, "part") == "machine" && text_at(row, "unit") != "J")
+      out[text_at(row, "unit")].push_back(text_at(row, "quantity"));
   return out;
 }
 

@@ -254,6 +254,9 @@ void energy_lines(Table& table, const Report& report) {
   const auto part = [&](double joules) { return percent(ratio(joules, e.joules)); };
   table.line("", "tests {}   stores {}   wires {}   DRAM {}   shading {}", part(tests), part(stores), part(links),
              part(dram), part(shading));
+  if (const auto& peak = e.peak)
+    table.line("", "peak {:.4g} W over {} cycles from cycle {}   mostly {}: {}", peak->watts, grouped(peak->cycles),
+               grouped(peak->first_cycle), peak->part, percent(peak->part_share));
   const Area& a = *report.area;
   Items items;
   for (std::size_t i = 0; i < kAreaParts.size(); ++i)

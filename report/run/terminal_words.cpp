@@ -187,7 +187,10 @@ void energy_words(Words& w) {
             "their accesses")
       .item("wires N", "energy.parts", "part of the packets and other messages: their ports and wires")
       .item("DRAM N", "energy.parts", "part of the memory: bytes and activations")
-      .item("shading N", "energy.parts", "part of the shader workers");
+      .item("shading N", "energy.parts", "part of the shader workers")
+      .item("peak N W over N cycles from cycle N", "energy.peak",
+            "the most power of any thousand cycles that begin at a multiple of energy.peak.resolution")
+      .item("mostly *: N", "energy.peak.part_share");
   w.line("area").item("N mm2", "area.mm2").item("N Mrays/s on each", "area.mrays_per_second_per_mm2");
   for (const AreaPartRow& row : kAreaParts)
     w.item(std::string(row.name) + " N", std::string("area.parts.") + row.key,

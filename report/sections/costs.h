@@ -82,6 +82,21 @@ struct EnergyParts {
   std::array<EnergyOf, kEnergyParts.size()> others{};
   PerPart<Parts, EnergyOf> declared{};  ///< of parts that declare themselves
   EnergyOf& operator[](EnergyPart part) { return others[static_cast<std::size_t>(part)]; }
+  /// Calls `body(key, energy)` with each part, in the order of the report.
+  template <class Body>
+  void for_each(const Body& body) const {
+    for (const UnitKindRow& row : kUnitKinds) body(row.work, units[row.kind]);
+    for (std::size_t i = 0; i < kEnergyParts.size(); ++i) body(kEnergyParts[i].key, others[i]);
+    Parts::for_each([&]<class P>(std::size_t i) { body(P::kSection, declared[i].value_or(EnergyOf{})); });
+  }
+  static constexpr std::size_t kParts = kUnitKinds.size() + kEnergyParts.size() + Parts::kSize;
+  /// So many rays are completed.
+  void share_among(double completed) {
+    for (const auto [kind, part] : units) part.rays = completed;
+    for (EnergyOf& part : others) part.rays = completed;
+    for (std::optional<EnergyOf>& part : declared)
+      if (part) part->rays = completed;
+  }
 };
 
 template <class V>
@@ -100,9 +115,30 @@ void describe(V& v, const EnergyParts& r) {
   Parts::for_each([&]<class P>(std::size_t i) { v.section(P::kSection, r.declared[i], P::kEnergyMeaning); });
 }
 
+/// The thousand cycles with the most energy.
+struct PowerPeak {
+  std::uint64_t first_cycle = 0, cycles = 0, resolution = 0;
+  double watts = 0, watts_at_most = 0;
+  std::string part;
+  double part_share = 0;
+};
+
+template <class V>
+void describe(V& v, const PowerPeak& r) {
+  v.field("first_cycle", r.first_cycle, "cycles", "cycle in which they begin");
+  v.field("cycles", r.cycles, "cycles", "their number");
+  v.field("resolution", r.resolution, "cycles", "they begin at a multiple of this; no other beginning was tried");
+  v.field("watts", r.watts, "W", "mean power in these cycles at engine.clock_mhz");
+  v.field("watts_at_most", r.watts_at_most, "W",
+          "bound for so many cycles that begin anywhere: the most energy of these and one resolution more");
+  v.field("part", r.part, "", "part with most of their energy, as in parts");
+  v.field("part_share", r.part_share, "", "its share of their energy");
+}
+
 struct Energy {
   std::string profile;
   double joules = 0, nj_per_ray = 0, watts = 0, rays_per_joule = 0;
+  std::optional<PowerPeak> peak{};
   EnergyParts parts{};
 };
 
@@ -113,6 +149,9 @@ void describe(V& v, const Energy& r) {
   v.field("nj_per_ray", r.nj_per_ray, "nJ/ray", "energy for each completed ray");
   v.field("watts", r.watts, "W", "mean power at engine.clock_mhz");
   v.field("rays_per_joule", r.rays_per_joule, "rays/J", "completed rays over energy: throughput per watt");
+  v.section("peak", r.peak,
+            "the thousand cycles with the most energy; absent if the run has fewer. An event is in the cycle in which "
+            "its part decides on it: a packet's tests when the first begins, a message when it is sent");
   v.section("parts", r.parts, "each part's energy; they add up to the whole");
 }
 

@@ -6,6 +6,7 @@
 #include "core/system/error.h"
 #include "ringbus/cycle/progress_log.h"
 #include "ringbus/cycle/wiring/byte_ledger.h"
+#include "ringbus/cycle/wiring/machine_energy.h"
 #include "ringbus/cycle/wiring/machine_series.h"
 #include "ringbus/cycle/wiring/simulated_machine.h"
 #include "ringbus/time/windows.h"
@@ -37,7 +38,7 @@ class CycleRun {
     WakeupTable wakeups(parts);
     machine_.connect(wakeups);
     const ClockRatio to_fastest = machine_.network().clocks().to_fastest(0);
-    run_windows(parts, wakeups, machine_.lookahead(), [&](Cycle reached) {
+    const auto keep_running = [&](Cycle reached) {
       const Cycle at = to_fastest.before(reached);
       stopped = options_.stop.stop_requested();
       note_progress(at);
@@ -48,7 +49,11 @@ class CycleRun {
         options_.progress(machine_.shading().completed());
       }
       return !stopped;
-    });
+    };
+    if (options_.meter == nullptr)
+      run_windows(parts, wakeups, machine_.lookahead(), keep_running);
+    else
+      run_metered(parts, wakeups, keep_running, *options_.meter);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
     if (!stopped) check_at_rest();
     RunResult out = result(last_event() + 1, !stopped);
@@ -59,6 +64,19 @@ class CycleRun {
   }
 
  private:
+  /// A cycle of the resources begins with the last cycle of the fastest clock that is not after it.
+  void run_metered(const std::vector<std::vector<Agent*>>& parts, WakeupTable& wakeups,
+                   const std::function<bool(Cycle)>& keep_running, EnergyMeter& meter) {
+    meter.begin(machine_.channels().rows(), most_samples(options_.samples, series_counters(config_.topology)));
+    const ClockRatio to_fastest = machine_.network().clocks().to_fastest(0);
+    const auto look = [&](Cycle) {
+      read_energy(machine_, energy_);
+      meter.read(energy_);
+      return to_fastest.floor_to_network(meter.next());
+    };
+    run_windows(parts, wakeups, machine_.lookahead(), keep_running, look, to_fastest.floor_to_network(meter.next()));
+  }
+
   /// The last cycle in which anything was done. Caches, memory, bus and bridges only pass on things that arrive later.
   Cycle last_event() const {
     Cycle last = machine_.shading().last_event();
@@ -114,7 +132,7 @@ class CycleRun {
     return out;
   }
 
-  RunResult result(Cycle end, bool complete) const {
+  RunResult result(Cycle end, bool complete) {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
     out.rays_completed = machine_.shading().completed();
@@ -180,6 +198,10 @@ class CycleRun {
       (c.own_caches ? *c.own_caches : c.own_caches.emplace()) += cache->statistics();
     c.parts = machine_.parts().counts();
     c.bytes = byte_ledger(machine_);
+    if (options_.meter != nullptr) {
+      read_energy(machine_, energy_);
+      options_.meter->close(end, energy_);
+    }
     if (kChecked && complete) {
       check_byte_ledger(c.bytes);
       check_lines(machine_, c.bytes, config_.memory);
@@ -251,7 +273,7 @@ class CycleRun {
     PerUnit<Cycle> units{};
     Cycle reads = 0, dispatch = 0;
     for (const auto& tile : machine_.resources()) {
-      const ResourceAgent::Busy own = tile->busy();
+      const ResourceAgent::Work own = tile->work();
       for (const auto [kind, busy] : units) busy += own.units[kind];
       reads += own.ray_reads;
       dispatch += own.dispatch;
@@ -309,6 +331,7 @@ class CycleRun {
   const RunOptions& options_;
   SimulatedMachine machine_;
   ProgressLog log_;
+  EnergyEvents energy_;
   std::optional<ProgressSample> all_begun_;
 };
 

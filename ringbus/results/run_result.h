@@ -16,6 +16,7 @@
 #include "ringbus/packets/statistics_sink.h"
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/results/energy_events.h"
 #include "ringbus/results/link_statistics.h"
 #include "ringbus/results/memory_request.h"
 #include "ringbus/results/nearest_result.h"
@@ -49,6 +50,7 @@ struct RunOptions {
   FollowedRay* ray = nullptr;                    ///< its life is recorded, in place of the timeline
   Transport* transport = nullptr;                ///< native: to the other ranks of the run
   std::uint64_t scene_bytes = 0;                 ///< bytes of the scene that this rank has, for its report
+  EnergyMeter* meter = nullptr;                  ///< cycle: reads what costs energy
   MemoryLog* memory = nullptr;                   ///< cycle: requests to the memory are appended
   cycle::TraceWindow trace{};                    ///< cycle: the steps of these cycles are kept
   cycle::WarmCaches warm{};                      ///< cycle: lines that the caches hold from the start

@@ -133,7 +133,7 @@ class Channel : public AnyChannel {
     returns_.at.advance(++returns_.count);
   }
 
-  std::uint64_t bytes_sent() const { return bytes_sent_; }  ///< for the sender
+  std::uint64_t bytes_sent() const final { return bytes_sent_; }
   Count messages() const override {
     return {sent_.load(std::memory_order_acquire), taken_.load(std::memory_order_acquire), size()};
   }

@@ -37,6 +37,13 @@ void ChannelList::connect(WakeupTable& wakeups, std::span<const Agent* const> ag
   }
 }
 
+void ChannelList::bytes_sent(std::vector<std::uint64_t>& bytes) const {
+  bytes.assign(kinds_.size(), 0);
+  for (const Listed& one : channels_)
+    bytes[index(one.kind)] +=
+        one.sized ? one.channel->bytes_sent() : kinds_[index(one.kind)].bytes_each * one.channel->messages().sent;
+}
+
 std::vector<ByteRow> ChannelList::rows() const {
   std::vector<ByteRow> rows;
   for (const Kind& kind : kinds_) rows.push_back(kind.row);

@@ -46,6 +46,7 @@ class AnyChannel {
   virtual Count messages() const = 0;
   /// Of a channel whose messages say their size.
   virtual Count bytes() const = 0;
+  virtual std::uint64_t bytes_sent() const = 0;  ///< for the sender, or while no agent runs
   /// From now on `slot` keeps the earliest arrival that was sent since it was last cleared. The sender writes it.
   virtual void wakes(Cycle& slot) = 0;
 
@@ -74,6 +75,8 @@ class ChannelList {
   void connect(WakeupTable& wakeups, std::span<const Agent* const> agents) const;
   /// The rows of the byte ledger in the order in which they were added, with the counts of all channels.
   std::vector<ByteRow> rows() const;
+  /// ByteRow::bytes of each row, while no agent runs.
+  void bytes_sent(std::vector<std::uint64_t>& bytes) const;
   static std::size_t index(MessageKind kind) { return static_cast<std::size_t>(kind); }
 
  private:

@@ -68,11 +68,13 @@ class Barrier {
 class WindowRun {
  public:
   WindowRun(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
-            const std::function<bool(Cycle)>& keep_running)
+            const std::function<bool(Cycle)>& keep_running, const std::function<Cycle(Cycle)>& look, Cycle first_look)
       : parts_(parts),
         wakeups_(wakeups),
         lookahead_(lookahead),
         keep_running_(keep_running),
+        look_(look),
+        next_look_(first_look),
         barrier_(parts.size()),
         next_(parts.size()),
         schedules_(parts.begin(), parts.end()) {}
@@ -138,7 +140,19 @@ class WindowRun {
         next_[thread].runs = 0;
         if (!alone) barrier_.wait(patience);
       }
-      next_[thread].runs += run_window(agents, schedule, first, first + lookahead_);
+      const Cycle end = first + lookahead_;
+      for (Cycle from = first;;) {  // all threads agree on next_look_, which is written between two barriers
+        if (next_look_ <= from) {
+          if (!alone) barrier_.wait(patience);
+          if (thread == 0) look_until(from);
+          if (!alone) barrier_.wait(patience);
+        }
+        const Cycle to = end_of_part(end);
+        next_[thread].runs += run_window(agents, schedule, from, to);
+        if (to == end) break;
+        poll(agents, schedule);
+        from = to;
+      }
       if (thread == 0) reached_ = first;
       if (!alone) barrier_.wait(patience);
     }
@@ -162,10 +176,24 @@ class WindowRun {
       for (std::size_t t = 0; t < parts_.size(); ++t) first = std::min(first, look(t, schedules_[t]));
       if (first == kNever || stop_.load(std::memory_order_relaxed)) return;
       if (window == 0 && !keep_running_(first)) return stop_.store(true, std::memory_order_relaxed);
-      for (std::size_t t = 0; t < parts_.size(); ++t)
-        runs += run_window(parts_[t], schedules_[t], first, first + lookahead_);
+      for (Cycle from = first, end = first + lookahead_; from < end;) {
+        look_until(from);
+        const Cycle to = end_of_part(end);
+        for (std::size_t t = 0; t < parts_.size(); ++t) {
+          runs += run_window(parts_[t], schedules_[t], from, to);
+          if (to < end) poll(parts_[t], schedules_[t]);
+        }
+        from = to;
+      }
       reached_ = first;
     }
+  }
+
+  /// The end of the part of a window that may be run before the next look.
+  Cycle end_of_part(Cycle end) const { return std::min(end, next_look_); }
+  /// Nothing happens before `now` any more.
+  void look_until(Cycle now) {
+    while (next_look_ <= now) next_look_ = look_(next_look_);
   }
 
   /// By agent of a thread: the time at which it is next to run, and whether it must be asked before every window.
@@ -190,6 +218,12 @@ class WindowRun {
     /// The first edge of an agent's clock that is not before a cycle of the fastest one.
     Cycle edge_at(std::size_t i, Cycle cycle) const { return clocks.empty() ? cycle : clocks[i].to_core(cycle); }
   };
+
+  /// Within a window, after a part of it: what agents have left out of next_after_run().
+  static void poll(const std::vector<Agent*>& agents, Schedule& schedule) {
+    for (std::size_t i = 0; i < agents.size(); ++i)
+      if (schedule.polled[i]) schedule.wake[i] = std::min(schedule.wake[i], agents[i]->unannounced());
+  }
 
   /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
   Cycle look(std::size_t thread, Schedule& schedule) {
@@ -264,6 +298,8 @@ class WindowRun {
   WakeupTable& wakeups_;
   Cycle lookahead_;
   const std::function<bool(Cycle)>& keep_running_;
+  const std::function<Cycle(Cycle)>& look_;
+  Cycle next_look_;  // written by thread 0 while no agent runs
   Barrier barrier_;
   std::vector<Next> next_;
   std::vector<Schedule> schedules_;  // by thread
@@ -277,8 +313,9 @@ class WindowRun {
 }  // namespace
 
 Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
-                  const std::function<bool(Cycle)>& keep_running) {
-  return WindowRun(parts, wakeups, lookahead, keep_running).run();
+                  const std::function<bool(Cycle)>& keep_running, const std::function<Cycle(Cycle)>& look,
+                  Cycle first_look) {
+  return WindowRun(parts, wakeups, lookahead, keep_running, look, first_look).run();
 }
 
 }  // namespace carousel::ringbus

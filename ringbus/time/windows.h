@@ -19,8 +19,14 @@ namespace carousel::ringbus {
 /// false the run ends early. Exceptions of agents pass through. Returns the last window's first cycle, the time
 /// reached.
 ///
+/// `look` is called on the calling thread too, while no agent runs, at times that it chooses: first at
+/// `first_look`, and then at the time that it returned last, which is later each time. All agents have then done
+/// what they do before that time and nothing that they do at it or later. A window in which such a time lies is run in
+/// two parts, so that its looks change nothing.
+///
 /// Agents that are not polled() must have all their channels connected to `wakeups`, which was made for `parts`.
 Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
-                  const std::function<bool(Cycle)>& keep_running);
+                  const std::function<bool(Cycle)>& keep_running, const std::function<Cycle(Cycle)>& look = {},
+                  Cycle first_look = kNever);
 
 }  // namespace carousel::ringbus

@@ -42,7 +42,8 @@ export function short(value) {
   return `${Number(value.toPrecision(3))}`;
 }
 
-export const full = (value) => value.toLocaleString('en', {maximumFractionDigits: 4});
+export const full = (value) =>
+  value !== 0 && Math.abs(value) < 1e-3 ? `${Number(value.toPrecision(4))}` : value.toLocaleString('en', {maximumFractionDigits: 4});
 
 /** What every chart with axes begins with. */
 export function base(colours) {

@@ -22,6 +22,7 @@ class BankedMemory final : public MemoryAgent {
   Cycle idle_from() const override { return last_step_ + 1; }  // from the last command on
   Cycle busy() const override { return dram_.busy(); }
   double peak_bytes_per_cycle() const override { return dram_.peak_bytes_per_cycle(); }
+  std::uint64_t activations() const override { return dram_.activations(); }
   std::optional<DramUse> dram_use(Cycle end) const override { return dram_.use(dram_.of_engine(end)); }
 
  private:

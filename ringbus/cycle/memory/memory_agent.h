@@ -53,6 +53,8 @@ class MemoryAgent : public Agent {
   /// Cycles that moving the lines took, the last one rounded up.
   virtual Cycle busy() const = 0;
   virtual double peak_bytes_per_cycle() const = 0;
+  /// Activations of rows so far; of a pipe none.
+  virtual std::uint64_t activations() const { return 0; }
   /// The use of DRAM with banks up to `end`. Call it after close().
   virtual std::optional<DramUse> dram_use(Cycle end) const = 0;
 

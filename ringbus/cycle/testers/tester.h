@@ -126,6 +126,9 @@ class Tester {
   /// Cycles in which the ray store is read: the sum of both ports where there are banks.
   Cycle busy_reads() const { return ray_reads_.use.busy + primitive_reads_.use.busy; }
 
+  /// Records that both ports have read for one test, so far.
+  std::uint64_t second_reads() const { return second_reads_; }
+
   /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.
   PerUnit<Cycle> busy_before(Cycle at) {
     PerUnit<Cycle> busy{};

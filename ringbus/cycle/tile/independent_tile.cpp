@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ringbus/cycle/tile/resource_energy.h"
+
 namespace carousel::ringbus::cycle {
 
 IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMemory& memory,
@@ -204,6 +206,13 @@ void IndependentTile::close(Cycle end) {
   samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   ledger_.close(end);
   tester_.close(end);
+}
+
+ResourceAgent::Work IndependentTile::work() const {
+  Work out{tester_.busy_units(), tester_.busy_reads(), 0};
+  read_energy(tester_, sink_.statistics(), shapes_.counts(), out);
+  out.energy.stack_bytes = stack_.pushed_bytes + stack_.popped_bytes;
+  return out;
 }
 
 TileResult IndependentTile::result() const {

@@ -9,6 +9,7 @@
 #include "ringbus/resource/collections/collection_store.h"
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
+#include "ringbus/results/energy_events.h"
 #include "ringbus/results/trace.h"
 #include "ringbus/time/agent.h"
 
@@ -23,12 +24,14 @@ class ResourceAgent : public Agent {
   virtual void close(Cycle end) = 0;
   /// After close().
   virtual TileResult result() const = 0;
-  /// How long its parts have been busy so far, as in result().
-  struct Busy {
+  /// How long its parts have been busy so far, as in result(), and what they did for which energy is counted.
+  struct Work {
     PerUnit<Cycle> units{};
     Cycle ray_reads = 0, dispatch = 0;
+    EnergyEvents::OfResource energy{};
+    const DistributorCounts* distributor = nullptr;  ///< null: there is none
   };
-  virtual Busy busy() const = 0;
+  virtual Work work() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
   /// Lines of shape data for which it has asked its cache.

@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ringbus/cycle/tile/resource_energy.h"
+
 namespace carousel::ringbus::cycle {
 
 namespace {
@@ -145,6 +147,12 @@ ResourceStatistics Tile::statistics() const {
   s.bubbles += dispatch_.idle_visits();
   s.seen_rays += dispatch_.idle_visit_rays();
   return s;
+}
+
+ResourceAgent::Work Tile::work() const {
+  Work out{tester_.busy_units(), tester_.busy_reads(), dispatch_.busy()};
+  read_energy(tester_, sink_.statistics(), shapes_.counts(), out);
+  return out;
 }
 
 TileResult Tile::result() const {

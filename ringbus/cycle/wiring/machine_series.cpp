@@ -171,7 +171,7 @@ std::size_t series_counters(const TopologyConfig& config) {
   const Topology topology(config);
   const std::size_t links = config.shape == TopologyShape::kGraph ? draw_whole(config).links.size() : 0;
   return topology.resources() * (kFirstPortCounter + 1) +
-         std::max(topology.wires().size(), links) * static_cast<std::size_t>(PortCounter::kEnd) + 32;
+         std::max(topology.wires().size(), links) * static_cast<std::size_t>(PortCounter::kEnd) + 64;
 }
 
 TimeSeries machine_series(const SimulatedMachine& machine) {

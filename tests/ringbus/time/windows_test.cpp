@@ -1,6 +1,7 @@
 // Agents on several threads: what one thread decides ends all of them.
 #include "ringbus/time/windows.h"
 
+#include <algorithm>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -101,6 +102,44 @@ TEST(Windows, FewAgentsRunOnOneThreadAndManyOnTheirOwn) {
     for (std::size_t i = 0; i < looks.size(); ++i) EXPECT_EQ(looks[i], 1 + 64 * i);  // as on one thread
     EXPECT_EQ(looks.size(), 10u);
   }
+}
+
+/// Works in every third cycle, and notes when.
+class Worker final : public Agent {
+ public:
+  Cycle next() const override { return next_ < 400 ? next_ : kNever; }
+  void run(Cycle end) override {
+    for (; next() < end; next_ += 3) last_ = next_;
+  }
+  std::string describe() const override { return ""; }
+  Cycle last() const { return last_; }
+
+ private:
+  Cycle next_ = 2, last_ = 0;
+};
+
+// Whoever looks finds all that comes before, and nothing that comes after, on any number of threads.
+TEST(Windows, ALookFindsWhatComesBeforeIt) {
+  for (const std::size_t threads : {1, 2, 3})
+    for (const std::size_t each : {1, 20})
+      for (const Cycle every : {1, 2, 7, 50}) {
+        std::vector<std::unique_ptr<Worker>> agents;
+        std::vector<std::vector<Agent*>> parts(threads);
+        for (std::vector<Agent*>& part : parts)
+          for (std::size_t i = 0; i < each; ++i) part.push_back(agents.emplace_back(std::make_unique<Worker>()).get());
+        WakeupTable wakeups(parts);
+        Cycle looks = 0;
+        const auto look = [&](Cycle at) {
+          EXPECT_EQ(at, ++looks * every);
+          // The last of 2, 5, 8 and so on to 398 before it.
+          const Cycle last = at < 3 ? 0 : std::min<Cycle>(398, (at - 3) / 3 * 3 + 2);
+          for (const auto& agent : agents) EXPECT_EQ(agent->last(), last) << at;
+          return at + every;
+        };
+        run_windows(
+            parts, wakeups, 5, [](Cycle) { return true; }, look, every);
+        EXPECT_EQ(looks, 402 / every) << threads << " threads";  // the last window ends with cycle 402
+      }
 }
 
 /// Sends to another; runs only when it is told.

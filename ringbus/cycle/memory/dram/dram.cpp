@@ -66,6 +66,12 @@ double Dram::peak_bytes_per_cycle() const {
          (1e6 * static_cast<double>(clock_mhz_));
 }
 
+std::uint64_t Dram::activations() const {
+  std::uint64_t sum = 0;
+  for (const DramChannel& channel : channels_) sum += channel.counts().row_misses + channel.counts().row_conflicts;
+  return sum;
+}
+
 DramCycle Dram::last_taken() const {
   DramCycle last = 0;
   for (const DramChannel& channel : channels_) last = std::max(last, channel.last_taken());

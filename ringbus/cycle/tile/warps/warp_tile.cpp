@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "ringbus/cycle/tile/resource_energy.h"
+
 namespace carousel::ringbus::cycle {
 
 WarpTile::WarpTile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings,
@@ -233,6 +235,15 @@ void WarpTile::close(Cycle end) {
   samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   ledger_.close(end);
   tester_.close(end);
+}
+
+ResourceAgent::Work WarpTile::work() const {
+  Work out{tester_.busy_units(), tester_.busy_reads(), 0};
+  read_energy(tester_, sink_.statistics(), shapes_.counts(), out);
+  out.energy.warps = true;
+  // What is packed goes out of one lane and into another.
+  out.energy.stack_bytes = ended_.stack().pushed_bytes + ended_.stack().popped_bytes + 2 * log_.counts().packed_bytes;
+  return out;
 }
 
 TileResult WarpTile::result() const {

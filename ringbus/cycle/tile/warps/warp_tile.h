@@ -48,7 +48,7 @@ class WarpTile final : public ResourceAgent {
   Cycle last_event() const override { return now_; }
   void close(Cycle end) override;
   TileResult result() const override;
-  Busy busy() const override { return {tester_.busy_units(), tester_.busy_reads(), 0}; }
+  Work work() const override;
   std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return {}; }

@@ -1,0 +1,196 @@
+#include "app/energy/energy_account.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string_view>
+#include <utility>
+
+#include "app/area/machine_area.h"
+#include "core/config/costs.h"
+#include "core/config/own_sections.h"
+#include "ringbus/topology/wire_length.h"
+
+namespace carousel::app {
+
+using report::EnergyPart;
+
+namespace {
+
+constexpr double kWord = 8;  // bytes of an access
+constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
+
+/// The mean of all resources, as their accesses are counted together.
+template <class Of>
+double mean(const Config& c, const Of& of) {
+  return static_cast<double>(sum_of_resources(c, of)) / static_cast<double>(c.topology.resources);
+}
+
+/// In the order of the report's links.
+std::vector<double> lengths(const Config& c, const ringbus::ParcelPlan& drawn, double link_mm) {
+  const ringbus::Topology topology(c.topology);
+  std::vector<double> out;
+  for (const ringbus::Topology::Wire& wire : topology.wires()) out.push_back(wire_length(topology, wire, link_mm));
+  if (const std::vector<double> ring = ringbus::stop_ring_lengths(c.topology, link_mm); !ring.empty())
+    out.insert(out.end(), ring.begin(), ring.end());
+  else
+    for (const config::Graph::Link& link : drawn.without_packets()) out.push_back(drawn.length(link, link_mm));
+  return out;
+}
+
+}  // namespace
+
+EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<ByteRow> rows)
+    : c_(config),
+      drawn_(ringbus::plan_parcels(config.topology, config.memory.line_bytes)),
+      link_mm_(link_mm),
+      costs_(costs_of(config)),
+      rows_(std::move(rows)),
+      wire_mm_(lengths(config, drawn_, link_mm)),
+      rays_kib_(mean(config, [](const OwnSections& one) { return one.rays.slots_per_resource; }) *
+                (kRecordBytes + static_cast<double>(config.rays.query.buffered()) * kBufferedHitBytes) / 1024 /
+                static_cast<double>(own_testers(config))),
+      collections_kib_(kIdBytes * mean(config, [](const OwnSections& one) { return one.collections.capacity; }) / 1024),
+      buffer_kib_(mean(config, [](const OwnSections& one) { return one.memory.shape_buffer_kib; })),
+      l1_kib_(mean(config, [](const OwnSections& one) { return one.memory.l1_kib; })),
+      l2_kib_(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks)) {}
+
+/// Adds up the energy of some events.
+class EnergyAccount::Sum {
+ public:
+  Sum(const EnergyAccount& account, const ringbus::EnergyEvents& events, double memory_times)
+      : a_(account), e_(events), memory_times_(memory_times) {}
+
+  report::EnergyParts take() {
+    for (std::size_t r = 0; r < e_.resources.size(); ++r) resource(e_.resources[r], static_cast<std::int64_t>(r));
+    caches();
+    for (std::size_t i = 0; i < e_.link_bytes.size(); ++i) {
+      const auto bytes = static_cast<double>(e_.link_bytes[i]);
+      parts_[EnergyPart::kPorts].add(bytes, pj(Cost::kHop));
+      parts_[EnergyPart::kWires].add(bytes * a_.wire_mm_.at(i), pj(Cost::kWire));
+    }
+    for (std::size_t i = 0; i < e_.row_bytes.size(); ++i) message(a_.rows_[i], static_cast<double>(e_.row_bytes[i]));
+    parts_[EnergyPart::kShades].add(static_cast<double>(e_.shaded), pj(Cost::kShade));
+    parts_[EnergyPart::kProducts].add(static_cast<double>(e_.products), pj(Cost::kProduct));
+    parts_[EnergyPart::kLookups].add(static_cast<double>(e_.lookups), pj(Cost::kLookup));
+    parts_[EnergyPart::kActivations].add(memory_times_ * static_cast<double>(e_.activations),
+                                         pj(hbm() ? Cost::kHbmActivation : Cost::kDramActivation));
+    return parts_;
+  }
+
+ private:
+  double pj(Cost of) const { return a_.costs_.of(of); }
+  bool hbm() const { return a_.c_.memory.dram.preset == DramConfig::Preset::kHbm2; }
+  void access(EnergyPart part, double bytes, double kib) {
+    parts_[part].add(bytes / kWord, a_.costs_.sram_access_pj(kib));
+  }
+
+  void resource(const ringbus::EnergyEvents::OfResource& of, std::int64_t number) {
+    for (const auto [kind, tests] : of.tests) parts_.units[kind].add(static_cast<double>(tests), pj(energy_of(kind)));
+    access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
+    access(EnergyPart::kRayStore, static_cast<double>(of.buffer_bytes), a_.rays_kib_);
+    access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(of.packet_rays), a_.collections_kib_);
+    access(EnergyPart::kShapeBuffers, kPlaceBytes * static_cast<double>(of.shape_reads), a_.buffer_kib_);
+    if (of.stack_bytes > 0)
+      access(EnergyPart::kStacks, static_cast<double>(of.stack_bytes),
+             of.warps ? register_kib(a_.c_, number) : a_.rays_kib_);
+  }
+
+  void caches() {
+    const auto line = static_cast<double>(a_.c_.memory.line_bytes);
+    access(EnergyPart::kL2, line * static_cast<double>(e_.l2_lines) + kWord * static_cast<double>(e_.asked_ahead),
+           a_.l2_kib_);
+    if (a_.l1_kib_ > 0) access(EnergyPart::kL1, line * static_cast<double>(e_.l1_lines), a_.l1_kib_);
+    Parts::for_each([&]<class P>(std::size_t i) {
+      if (!e_.parts.of<P>()) return;
+      const PartEnergy energy = P::energy(*e_.parts.of<P>(), a_.c_.parts.of<P>(), a_.costs_);
+      parts_.declared[i].emplace().add(energy.events, energy.pj_each);
+    });
+  }
+
+  /// Shared parts stand in the middle of the square of the resources that share them: the way is half of its side.
+  void message(const ByteRow& row, double bytes) {
+    if (row.over == "links") return;
+    if (row.from == "DRAM" || row.to == "DRAM") {
+      if (row.from == "L2" && row.over == "address wires") return;  // contained in the bytes of the lines
+      if (row.to == "L2") access(EnergyPart::kL2, memory_times_ * bytes, a_.l2_kib_);
+      parts_[EnergyPart::kDram].add(memory_times_ * bytes, pj(hbm() ? Cost::kHbm : Cost::kDram));
+      return;
+    }
+    if (!travels_over_links(row)) {
+      parts_[EnergyPart::kMessages].add(bytes, pj(Cost::kHop));
+      parts_[EnergyPart::kMessageWires].add(bytes * a_.link_mm_ * std::sqrt(static_cast<double>(sharing(row))) / 2,
+                                            pj(Cost::kWire));
+    }
+    if (row.what == "new rays" || row.what == "completed rays") access(EnergyPart::kRayStore, bytes, a_.rays_kib_);
+    if (row.from == "L2" && row.to == "L1") access(EnergyPart::kL1, bytes, a_.l1_kib_);
+    if (row.what == "shape data") access(EnergyPart::kShapeBuffers, bytes, a_.buffer_kib_);
+  }
+
+  /// The resources that share the parts between which the messages go. Parts that declare themselves are beside the
+  /// L2s.
+  std::int64_t sharing(const ByteRow& row) const {
+    const auto is = [&](std::string_view name) { return row.from == name || row.to == name; };
+    bool at_l2 = is("L2");
+    Parts::for_each([&]<class P>(std::size_t) { at_l2 |= is(P::kName); });
+    if (at_l2) return std::min(a_.c_.memory.shared_by, a_.c_.topology.resources);
+    return is("L1") ? 1 : a_.c_.topology.resources;
+  }
+
+  /// The rows of links count what is drawn.
+  bool travels_over_links(const ByteRow& row) const {
+    if (row.what == "new rays") return a_.drawn_.parts.new_rays;
+    if (row.what == "completed rays") return a_.drawn_.parts.completed_rays;
+    return !a_.drawn_.parts.caches.empty() && (row.from == "L2" || row.to == "L2");
+  }
+
+  const EnergyAccount& a_;
+  const ringbus::EnergyEvents& e_;
+  double memory_times_;
+  report::EnergyParts parts_;
+};
+
+report::EnergyParts EnergyAccount::parts(const ringbus::EnergyEvents& events, double memory_times) const {
+  return Sum(*this, events, memory_times).take();
+}
+
+ringbus::EnergyEvents energy_events(const report::Report& r) {
+  ringbus::EnergyEvents out;
+  for (const report::Resource& resource : *r.resources) {
+    ringbus::EnergyEvents::OfResource& of = out.resources.emplace_back();
+    for (const UnitKindRow& row : kUnitKinds) of.tests[row.kind] = resource.tests.*row.tests;
+    of.record_reads = resource.counts.reads + (resource.units ? resource.units->second_reads.value_or(0) : 0);
+    of.packet_rays = resource.counts.packet_rays;
+    if (resource.stack) of.stack_bytes = resource.stack->pushed_bytes + resource.stack->popped_bytes;
+    of.warps = resource.units && resource.units->warps;
+    if (of.warps) of.stack_bytes += 2 * resource.units->warps->counts.packed_bytes;
+  }
+  // The report has these of all resources together.
+  if (!out.resources.empty() && r.nearest) out.resources.front().buffer_bytes = r.nearest->counts.moved_bytes();
+  const ShapeBufferCounts& buffers = r.memory->shape_buffers.counts;
+  if (!out.resources.empty()) out.resources.front().shape_reads = buffers.hits + buffers.merged + buffers.misses;
+  for (const report::Link& link : *r.links) out.link_bytes.push_back(link.bytes.value_or(0));
+  for (const ByteRow& row : *r.bytes) out.row_bytes.push_back(row.bytes);
+  for (const report::Cache& cache : r.memory->caches) {
+    out.l2_lines += cache.counts.lines;
+    out.asked_ahead += cache.ahead ? cache.ahead->asked : 0;
+  }
+  if (r.memory->own_caches) out.l1_lines = r.memory->own_caches->counts.lines;
+  out.parts = r.parts;
+  out.shaded = r.shading.shaded;
+  out.products = r.shading.products.value_or(0);
+  out.lookups = r.shading.lookups.value_or(0);
+  if (r.memory->dram)
+    for (const report::DramChannel& channel : r.memory->dram->channels)
+      out.activations += channel.counts.row_misses + channel.counts.row_conflicts;
+  return out;
+}
+
+double joules_of(const report::EnergyParts& parts) {
+  double joules = 0;
+  for (const auto [kind, part] : parts.units) joules += part.joules;
+  for (const report::EnergyOf& part : parts.others) joules += part.joules;
+  for (const std::optional<report::EnergyOf>& part : parts.declared) joules += part ? part->joules : 0;
+  return joules;
+}
+
+}  // namespace carousel::app
