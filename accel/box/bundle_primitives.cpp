@@ -7,11 +7,8 @@ namespace carousel::accel {
 
 namespace {
 
-Aabb box_of_primitive(const TriangleBlock& block, std::uint32_t lane, bool sphere) {
-  if (sphere) {
-    const auto [centre, radius] = sphere_in(block, lane);
-    return sphere_box(centre, radius);
-  }
+Aabb box_of_primitive(const TriangleBlock& block, std::uint32_t lane, bool procedural) {
+  if (procedural) return procedural_box(block, lane);
   Aabb box;
   for (const auto& vertex : block.vertex) box.extend(Vec3{vertex[0][lane], vertex[1][lane], vertex[2][lane]});
   return box;

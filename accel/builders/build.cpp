@@ -35,6 +35,7 @@ class AccelBuilder {
       : scene_(scene), config_(config), executor_(executor), planes_(planes), ranks_(ranks), trees_(trees) {
     accel_.width = static_cast<int>(config.width);
     accel_.accuracy = accuracy;
+    accel_.programs = scene.programs;
   }
 
   Accel run() {
@@ -88,8 +89,9 @@ class AccelBuilder {
         accel_.promoted_instances += accel_.instances[i].transform.promoted;
       } else {
         if (!mesh.spheres.empty())
-          throw SceneError(scene_.name, "",
-                           "instance " + std::to_string(i) + " flattens a sphere: its transform has no inverse");
+          throw SceneError(
+              scene_.name, "",
+              "instance " + std::to_string(i) + " flattens a procedural primitive: its transform has no inverse");
         accel_.instances[i].transform = InstanceTransform{};
         baked_.emplace(i, bake(mesh, instance.world_from_model));
         blas_of_[i] = static_cast<std::uint32_t>(sources_.size());

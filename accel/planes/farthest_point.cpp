@@ -75,8 +75,7 @@ Aabb model_box(const Accel& accel, NodeRef root) {
   for (std::uint32_t i = 0; i < root.triangles(); ++i) {
     const TriangleBlock& block = accel.blocks[root.first_block() + i / kBlockTriangles];
     if (root.is_procedural()) {
-      const BlockSphere sphere = sphere_in(block, i % kBlockTriangles);
-      box.extend(sphere_box(sphere.centre, sphere.radius));
+      box.extend(procedural_box(block, i % kBlockTriangles));
       continue;
     }
     for (const auto& vertex : block.vertex)

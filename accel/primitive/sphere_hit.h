@@ -6,8 +6,10 @@
 #include "accel/primitive/has_non_opaque.h"
 #include "accel/primitive/local_ray.h"
 #include "accel/structure/accel.h"
+#include "accel/structure/program_hits.h"
 #include "accel/structure/sphere.h"
 #include "core/numeric/octahedral.h"
+#include "scene/model/scene.h"
 
 namespace carousel::accel {
 
@@ -43,6 +45,42 @@ template <class Slab>
     return true;
   }
   return false;
+}
+
+/// Likewise where a program reports hits of the ray. The nearest of those that nothing lets pass counts.
+template <class Slab>
+[[gnu::noinline]] bool lower_by_program(const Accel& accel, const TriangleBlock& block, std::size_t lane,
+                                        const LocalRay<Slab>& ray, Hit& hit) {
+  const Aabb box = procedural_box(block, lane);
+  const Ray local{ray.origin, ray.record->ray.tmin, ray.direction, ray.record->ray.tmax};
+  const ProgramHits hits = program_hits(accel.programs[program_in(block, lane)], box, local, ray.counts);
+  float entry;
+  if (hits.count == 0 || !slab(ray.slab, box, hit.t, entry)) return false;
+  const std::uint32_t primitive = block.primitive[lane] & kPrimitiveMask;
+  const bool calls_any_hit = (block.primitive[lane] & kNonOpaqueBit) != 0;
+  bool lowered = false;
+  for (std::size_t k = 0; k < hits.count; ++k) {
+    const ProgramHits::One& one = hits.hit[k];
+    const std::uint8_t culled_by = one.facing > 0 ? kRayCullFront : one.facing < 0 ? kRayCullBack : 0;
+    if (one.t > hit.t || (ray.record->tag.flags & culled_by) != 0) continue;
+    const float distance = std::max({one.t, entry, ray.instance_entry});
+    if (!closer(distance, ray.instance, primitive, hit)) continue;
+    const Hit found{distance, one.where.x, one.where.y, ray.instance, primitive};
+    const std::uint64_t calls = ray.counts->any_hit_calls;
+    if (calls_any_hit && !any_hit_accepts(accel, ray, found)) continue;
+    if (reported(accel, ray, found, ray.counts->any_hit_calls > calls)) continue;
+    hit = found;
+    lowered = true;
+  }
+  return lowered;
+}
+
+/// One of the two, as the primitive in the lane is a sphere or has a program.
+template <class Slab>
+bool lower_by_procedural(const Accel& accel, const TriangleBlock& block, std::size_t lane, const LocalRay<Slab>& ray,
+                         Hit& hit) {
+  return program_in(block, lane) == scene::kNoProgram ? lower_by_sphere(accel, block, lane, ray, hit)
+                                                      : lower_by_program(accel, block, lane, ray, hit);
 }
 
 }  // namespace carousel::accel

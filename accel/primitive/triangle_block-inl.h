@@ -190,15 +190,15 @@ HWY_INLINE bool each_block(const Accel& accel, NodeRef leaf, std::uint32_t lanes
   return changed;
 }
 
-/// The spheres of a leaf likewise.
+/// The procedural primitives of a leaf likewise.
 template <class Slab>
-HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const LocalRay<Slab>& ray,
-                             Hit& hit) {
+HWY_INLINE bool test_procedurals(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const LocalRay<Slab>& ray,
+                                 Hit& hit) {
   bool changed = false;
   for (std::uint32_t i = 0; i < leaf.triangles(); ++i)
     if (lanes >> i & 1)
-      changed |=
-          lower_by_sphere(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles], i % kBlockTriangles, ray, hit);
+      changed |= lower_by_procedural(accel, accel.blocks[leaf.first_block() + i / kBlockTriangles], i % kBlockTriangles,
+                                     ray, hit);
   return changed;
 }
 
@@ -206,7 +206,7 @@ HWY_INLINE bool test_spheres(const Accel& accel, NodeRef leaf, std::uint32_t lan
 template <class Slab>
 HWY_NOINLINE bool test_leaf_otherwise(const Accel& accel, NodeRef leaf, std::uint32_t lanes, const LocalRay<Slab>& ray,
                                       Hit& hit) {
-  if (leaf.is_procedural()) return test_spheres(accel, leaf, lanes, ray, hit);
+  if (leaf.is_procedural()) return test_procedurals(accel, leaf, lanes, ray, hit);
   const auto each = [&](const auto& test) HWY_ATTR { return each_block(accel, leaf, lanes, test); };
   switch (accel.accuracy.triangle) {
     case TriangleLevel::kFast:

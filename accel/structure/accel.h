@@ -16,6 +16,7 @@
 #include "accel/structure/tree_pieces.h"
 #include "accel/transform/transform.h"
 #include "core/config/fields/accuracy.h"
+#include "core/program/program.h"
 #include "core/types/aabb.h"
 #include "core/types/any_hit.h"
 #include "core/types/hit_sink.h"
@@ -63,6 +64,7 @@ struct Accel {
   MicromapPlaces micromap_places;                      ///< bytes of the micromaps, by block; empty without
   HitSink* all_hits = nullptr;  ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   NearestSink* nearest_hits = nullptr;  ///< takes the hits of rays that look for several, set before tracing; or null
+  std::vector<RayProgram> programs;     ///< of primitives; kept by no rank apart, as a unit holds them all
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it
   bool procedural_primitives = false;   ///< there are some
   bool has_non_opaque = false;          ///< some primitives have kNonOpaqueBit

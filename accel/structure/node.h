@@ -96,8 +96,9 @@ struct alignas(64) Node {
 static_assert(sizeof(Node) == 256);
 
 /// Four triangles, vertex by vertex, axis by axis. Unused lanes hold NaN positions, which no ray can hit.
-/// A block of spheres, the procedural primitives there are, has their centres for first vertices and their radii where
-/// a second vertex has its x; the rest stays unused.
+/// A block of procedural primitives has the middles of their boxes for first vertices, and for third ones the ways from
+/// there to the sides. Where a second vertex has its x is the radius of a sphere, or of one around what a program
+/// finds; where it has its y are the bits of the program's number. The rest stays unused.
 struct alignas(16) TriangleBlock {
   float vertex[3][3][kBlockTriangles];       ///< [vertex][axis][lane]
   std::uint32_t primitive[kBlockTriangles];  ///< with kNonOpaqueBit

@@ -17,10 +17,8 @@ inline std::array<Vec3, 3> triangle_corners(const Accel& accel, NodeRef leaf, st
 
 /// The box of a leaf's primitive number `i`.
 inline Aabb primitive_box(const Accel& accel, NodeRef leaf, std::uint32_t i) {
-  if (leaf.is_procedural()) {
-    const BlockSphere sphere = sphere_in(accel.blocks[leaf.first_block() + i / kBlockTriangles], i % kBlockTriangles);
-    return sphere_box(sphere.centre, sphere.radius);
-  }
+  if (leaf.is_procedural())
+    return procedural_box(accel.blocks[leaf.first_block() + i / kBlockTriangles], i % kBlockTriangles);
   Aabb box;
   for (const Vec3& corner : triangle_corners(accel, leaf, i)) box.extend(corner);
   return box;

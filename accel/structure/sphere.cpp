@@ -26,11 +26,11 @@ bool cross_sphere(const Vec3& origin, const Vec3& direction, const Vec3& centre,
   return true;
 }
 
-Aabb sphere_box(const Vec3& centre, float radius) {
+Aabb box_around(const Vec3& centre, const Vec3& reach) {
   Aabb box;
   constexpr float kFar = std::numeric_limits<float>::infinity();
   for (int axis = 0; axis < 3; ++axis) {
-    const double lo = double{centre[axis]} - radius, hi = double{centre[axis]} + radius;
+    const double lo = double{centre[axis]} - reach[axis], hi = double{centre[axis]} + reach[axis];
     box.lo[axis] = static_cast<float>(lo);
     box.hi[axis] = static_cast<float>(hi);
     if (double{box.lo[axis]} > lo) box.lo[axis] = std::nextafter(box.lo[axis], -kFar);

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
 #include "accel/structure/node.h"
 #include "core/types/aabb.h"
 #include "core/types/vec.h"
@@ -19,7 +23,7 @@ struct SphereCrossing {
 /// radius or direction of zero, and for anything with a NaN.
 bool cross_sphere(const Vec3& origin, const Vec3& direction, const Vec3& centre, float radius, SphereCrossing& out);
 
-/// A sphere where it stands in a block of a procedural leaf.
+/// A sphere where it stands in a block of a procedural leaf; or the sphere around a primitive with a program.
 struct BlockSphere {
   Vec3 centre;
   float radius;
@@ -28,7 +32,22 @@ inline BlockSphere sphere_in(const TriangleBlock& block, std::size_t lane) {
   return {{block.vertex[0][0][lane], block.vertex[0][1][lane], block.vertex[0][2][lane]}, block.vertex[1][0][lane]};
 }
 
+/// The program of the primitive in a lane, a number in Accel::programs; scene::kNoProgram for a sphere.
+inline std::uint32_t program_in(const TriangleBlock& block, std::size_t lane) {
+  return std::bit_cast<std::uint32_t>(block.vertex[1][1][lane]);
+}
+
+/// The smallest box of floats that reaches so far from its middle.
+Aabb box_around(const Vec3& centre, const Vec3& reach);
 /// The smallest box of floats that holds the sphere.
-Aabb sphere_box(const Vec3& centre, float radius);
+inline Aabb sphere_box(const Vec3& centre, float radius) {
+  return box_around(centre, Vec3(radius));
+}
+
+/// The box of a procedural primitive of either kind, where it stands in a block.
+inline Aabb procedural_box(const TriangleBlock& block, std::size_t lane) {
+  const auto& reach = block.vertex[2];
+  return box_around(sphere_in(block, lane).centre, {reach[0][lane], reach[1][lane], reach[2][lane]});
+}
 
 }  // namespace carousel::accel

@@ -42,7 +42,7 @@ PlainTree tree_over(const scene::Mesh& mesh) {
     for (const Vec3& p : corners(mesh, i)) box.extend(p);
     add(box);
   }
-  for (const scene::Sphere& sphere : mesh.spheres) add(sphere_box(sphere.center, sphere.radius));
+  for (const scene::Sphere& sphere : mesh.spheres) add(box_around(sphere.center, sphere.reach()));
   return PlainTree(boxes);
 }
 

@@ -6,6 +6,7 @@
 #include <type_traits>
 
 #include "accel/exact/exact_triangle.h"
+#include "accel/structure/program_hits.h"
 #include "accel/structure/sphere.h"
 #include "core/numeric/octahedral.h"
 
@@ -162,7 +163,7 @@ bool in_range(float t, const Ray& ray) {
 }  // namespace
 
 OraclePrimitives::OraclePrimitives(const scene::Scene& scene, const AccuracyConfig& accuracy, const AnyHit* any_hit)
-    : accuracy_(accuracy), any_hit_(any_hit), opacity_(scene) {
+    : scene_(scene), accuracy_(accuracy), any_hit_(any_hit), opacity_(scene) {
   placed_.reserve(scene.instances.size());
   for (const scene::Instance& instance : scene.instances) {
     Placed& placed = placed_.emplace_back();
@@ -192,7 +193,7 @@ Aabb OraclePrimitives::box(std::uint32_t instance, std::uint32_t primitive) cons
   const std::size_t triangles = placed.mesh->triangle_count();
   if (primitive < triangles) return box_of(corners(placed, primitive));
   const scene::Sphere& sphere = placed.mesh->spheres[primitive - triangles];
-  return sphere_box(sphere.center, sphere.radius);
+  return box_around(sphere.center, sphere.reach());
 }
 
 void OraclePrimitives::set_model_box(std::uint32_t instance, const Aabb& box) {
@@ -226,6 +227,7 @@ int OraclePrimitives::cross_triangle(const LocalRay& ray, const Placed& placed, 
 int OraclePrimitives::cross_spheres(const LocalRay& ray, const Placed& placed, std::uint32_t primitive, float tmax,
                                     Candidates& out) const {
   const scene::Sphere& sphere = placed.mesh->spheres[primitive - placed.mesh->triangle_count()];
+  if (sphere.program != scene::kNoProgram) return cross_program(ray, sphere, primitive, tmax, out);
   SphereCrossing crossing;
   float entry;
   if (!cross_sphere(ray.ray.origin, ray.ray.direction, sphere.center, sphere.radius, crossing) ||
@@ -240,6 +242,19 @@ int OraclePrimitives::cross_spheres(const LocalRay& ray, const Placed& placed, s
                                                 k == 0 ? 1 : -1};
   }
   return count;
+}
+
+int OraclePrimitives::cross_program(const LocalRay& ray, const scene::Sphere& bounds, std::uint32_t primitive,
+                                    float tmax, Candidates& out) const {
+  const Aabb box = box_around(bounds.center, bounds.reach());
+  float entry;
+  if (!ray.boxes.enters(box, tmax, entry)) return 0;
+  const ProgramHits hits = program_hits(scene_.programs[bounds.program], box, ray.ray, nullptr);
+  for (std::size_t k = 0; k < hits.count; ++k)
+    out[k] = {{std::max({hits.hit[k].t, entry, ray.entry}), hits.hit[k].where.x, hits.hit[k].where.y, ray.instance,
+               primitive},
+              hits.hit[k].facing};
+  return static_cast<int>(hits.count);
 }
 
 bool OraclePrimitives::accepts(const RayRequest& request, const Candidate& candidate) const {

@@ -7,6 +7,7 @@
 #include "accel/transform/transform.h"
 #include "accel/traverse/oracle_box.h"
 #include "core/config/fields/accuracy.h"
+#include "core/program/program.h"
 #include "core/types/any_hit.h"
 #include "core/types/workload.h"
 #include "scene/model/opacity.h"
@@ -34,7 +35,7 @@ class OraclePrimitives {
     Hit hit;
     int facing;  ///< 1: the ray sees the primitive's front; -1: its back; 0: neither
   };
-  using Candidates = std::array<Candidate, 2>;
+  using Candidates = std::array<Candidate, kMostProgramHits>;
 
   std::uint32_t instances() const { return static_cast<std::uint32_t>(placed_.size()); }
   std::uint32_t primitives(std::uint32_t instance) const;
@@ -52,7 +53,8 @@ class OraclePrimitives {
 
   /// `world` in an instance whose world box it enters at `entry`.
   LocalRay local_ray(const Ray& world, std::uint32_t instance, float entry) const;
-  /// Up to two crossings, the nearer first, no farther than `tmax` but for rounding.
+  /// Up to two crossings, the nearer first, or as many as a program reports, in its order; no farther than `tmax` but
+  /// for rounding.
   int cross(const LocalRay& ray, std::uint32_t primitive, float tmax, Candidates& out) const;
   /// False if the ray's flags or a non-opaque material let it pass.
   bool accepts(const RayRequest& request, const Candidate& candidate) const;
@@ -72,6 +74,10 @@ class OraclePrimitives {
   int cross_spheres(const LocalRay& ray, const Placed& placed, std::uint32_t primitive, float tmax,
                     Candidates& out) const;
 
+  int cross_program(const LocalRay& ray, const scene::Sphere& bounds, std::uint32_t primitive, float tmax,
+                    Candidates& out) const;
+
+  const scene::Scene& scene_;
   AccuracyConfig accuracy_;
   const AnyHit* any_hit_;
   scene::Opacity opacity_;

@@ -9,6 +9,7 @@
 #include "core/config/graph/ring.h"
 #include "core/config/load/validate.h"
 #include "core/config/own_sections.h"
+#include "core/program/program.h"
 #include "core/system/error.h"
 #include "core/types/nearest_counts.h"
 #include "ringbus/cycle/parcels/parcel_plan.h"
@@ -30,6 +31,16 @@ void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, co
     out.size += lanes;
     out.mm2 += lanes * cost(c, area_of(kind));
   }
+}
+
+/// Instructions of all programs, and registers, of each unit that runs programs (KiB).
+double program_kib(const Config& c) {
+  if (c.scene.objects.empty()) return 0;
+  std::size_t instructions = 0;
+  for (const auto& [name, primitive] : c.primitives.named) instructions += primitive.program.size();
+  constexpr double kRegisterBytes = 4;
+  const double unit = static_cast<double>(kInstructionBytes * instructions) + kRegisterBytes * kMostRegisters;
+  return unit * static_cast<double>(c.topology.resources * own_testers(c)) / kKiB;
 }
 
 /// A place of a link's queue: a packet, and what travels in its place.
@@ -100,6 +111,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     add_units(parts[AreaPart::kUnits], c, scene, own_sections(c, r).testers);
   const auto all = [&](const auto& of) { return static_cast<double>(sum_of_resources(c, of)); };
   const auto slots = static_cast<double>(all_slots(c));
+  parts[AreaPart::kUnits].mm2 += program_kib(c) * cost(c, Cost::kSramArea);
   store(AreaPart::kRayStores, slots * (kRecordBytes + hit_buffer_bytes(c)) / kKiB);
   if (c.rays.banks > 0)  // each bank has two ports
     parts[AreaPart::kRayStores].mm2 += parts[AreaPart::kRayStores].size * cost(c, Cost::kPortArea);

@@ -68,6 +68,8 @@ class Trial {
         accel_(p_.scene, p_.config(), small_.bvh, p_.accel.any_hit),
         lifted_(ringbus::tester_limited(p_.config())),
         exact_(p_.scene, p_.accel.any_hit) {
+    if (!p_.scene.programs.empty())
+      throw ConfigError("scene.objects", "exact arithmetic knows no hits of programs; expected none with this command");
     if (!arguments.quiet) progress_.emplace(stderr);
     small_.image.samples = std::min<std::int64_t>(small_.image.samples, 4);
     shrink(small_.image, kCameraRays / small_.image.samples);

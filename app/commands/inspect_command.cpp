@@ -20,6 +20,7 @@
 #include "core/system/executor.h"
 #include "core/types/enum_names.h"
 #include "scene/load_scene.h"
+#include "scene/place_objects.h"
 
 namespace carousel::app {
 
@@ -63,6 +64,7 @@ int inspect_command(const InspectArguments& arguments) {
       located.config.scene, {}, [](const std::string& w) { spdlog::warn("{}", w); },
       [&](const scene::Scene& s) { return shading::images_read(s, choice); }, view_of(located.config),
       make_executor(std::max(1u, std::thread::hardware_concurrency())).get());
+  scene::place_objects(scene, located.config.scene, located.config.primitives, located.config.programs);
   if (!arguments.frame.empty()) {
     const Framing framing = frame_node(scene, arguments.frame, view_of(located.config).aspect);
     print_result(arguments.json ? framing_json(framing).dump(2) + "\n" : framing_yaml(framing));

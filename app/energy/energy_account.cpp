@@ -85,7 +85,12 @@ class EnergyAccount::Sum {
   }
 
   void resource(const ringbus::EnergyEvents::OfResource& of, std::int64_t number) {
-    for (const auto [kind, tests] : of.tests) parts_.units[kind].add(static_cast<double>(tests), pj(energy_of(kind)));
+    for (const UnitKindRow& row : kUnitKinds) {
+      // The energy of a test by a program is that of its instructions.
+      const std::uint64_t by_program = row.kind == UnitKind::kProcedural ? of.tests.programs : 0;
+      parts_.units[row.kind].add(static_cast<double>(of.tests.*row.tests - by_program), pj(energy_of(row.kind)));
+    }
+    if (of.tests.programs > 0) instructions(of.tests);
     access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
     access(EnergyPart::kRayStore, static_cast<double>(of.buffer_bytes), a_.rays_kib_);
     access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(of.packet_rays), a_.collections_kib_);
@@ -93,6 +98,16 @@ class EnergyAccount::Sum {
     if (of.stack_bytes > 0)
       access(EnergyPart::kStacks, static_cast<double>(of.stack_bytes),
              of.warps ? register_kib(a_.c_, number) : a_.rays_kib_);
+  }
+
+  void instructions(const IntersectionCounts& counts) {
+    const auto add = [&](std::uint64_t executed, Cost each) {
+      parts_.units[UnitKind::kProcedural].add(static_cast<double>(executed), pj(each));
+    };
+    add(counts.simple_instructions, Cost::kSimpleInstruction);
+    add(counts.product_instructions, Cost::kProductInstruction);
+    add(counts.divide_instructions, Cost::kDivideInstruction);
+    add(counts.branch_instructions, Cost::kBranchInstruction);
   }
 
   void caches() {
@@ -157,7 +172,7 @@ ringbus::EnergyEvents energy_events(const report::Report& r) {
   ringbus::EnergyEvents out;
   for (const report::Resource& resource : *r.resources) {
     ringbus::EnergyEvents::OfResource& of = out.resources.emplace_back();
-    for (const UnitKindRow& row : kUnitKinds) of.tests[row.kind] = resource.tests.*row.tests;
+    of.tests = resource.tests;
     of.record_reads = resource.counts.reads + (resource.units ? resource.units->second_reads.value_or(0) : 0);
     of.packet_rays = resource.counts.packet_rays;
     if (resource.stack) of.stack_bytes = resource.stack->pushed_bytes + resource.stack->popped_bytes;

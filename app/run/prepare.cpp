@@ -30,6 +30,7 @@
 #include "ringbus/results/run_features.h"
 #include "scene/model/instance_overlap.h"
 #include "scene/moment.h"
+#include "scene/place_objects.h"
 #include "shading/effects/effects_plan.h"
 #include "shading/surface/opacity_states.h"
 
@@ -98,6 +99,7 @@ void load_scene(Prepared& p, const SceneConfig& config) {
         return shading::images_read(s, p.config().shading.effects);
       },
       view_of(p.config()), make_executor(p.threads_beside).get());
+  scene::place_objects(p.scene, p.config().scene, p.config().primitives, p.config().programs);
   shading::strip_effects(p.scene, p.config().shading.effects);
   std::uint64_t image_bytes = 0;
   for (const scene::Image& image : p.scene.images) image_bytes += image.rgba.size();

@@ -65,6 +65,8 @@ struct Config {
   CullPlanesConfig cull_planes;
   BundlesConfig bundles;
   TestersConfig testers;
+  PrimitivesConfig primitives;
+  ProgramsConfig programs;
   MemoryConfig memory;
   PartKeys<Parts> parts;
   ShadingConfig shading;
@@ -120,6 +122,8 @@ void describe(V& v, Config& c) {
   v.section("cull_planes", c.cull_planes, "Planes that mark parts of boxes as empty.");
   v.section("bundles", c.bundles, "Bundles of similar rays that are tested as one.");
   v.section("testers", c.testers, "The test units of a resource. A bare number is the number of units.");
+  v.section("primitives", c.primitives, "Primitives of your own, by name, each with an intersection program.");
+  v.section("programs", c.programs, "The units that run programs: the time of an instruction.");
   v.section("memory", c.memory, "The caches and the memory of the simulated machine.");
   Parts::for_each([&]<class P>(std::size_t) { v.section(P::kSection, c.parts.template of<P>(), P::kMeaning); });
   v.section("shading", c.shading, "The shader workers and the effects.");

@@ -160,6 +160,8 @@ constexpr Row kRows[] = {
     {"testers.any_hit_unit", kCycle},
     {"testers.micromap_unit", kCycle},
     {"testers.hit_buffer", kCycle},
+    {"primitives", kObjects},
+    {"programs", kObjects},
     {"testers.simd", kCycle},
     {"testers.simd.map", kVectors},
     {"testers.simd.reformat_cycles", kVectors},

@@ -235,6 +235,8 @@ inline constexpr Condition kBundleUnits{[](const C& c, const S&) {
                                         "no units test bundles only"};
 inline constexpr Condition kTransforms{[](const C&, const S& s) { return s.transforms; },
                                        "no instance has a transform"};
+inline constexpr Condition kObjects{[](const C& c, const S&) { return !c.scene.objects.empty(); },
+                                    "scene.objects has none"};
 inline constexpr Condition kProcedural{[](const C&, const S& s) { return s.procedural; },
                                        "the scene has no procedural primitives"};
 inline constexpr Condition kAnyHit{[](const C&, const S& s) { return s.any_hit; }, "every surface is opaque"};

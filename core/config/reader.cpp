@@ -352,12 +352,12 @@ void Reader::others(std::map<std::string, std::int64_t>& value, IntRange range, 
   const std::vector<std::string> known = scopes_.back().known;
   for (const Member& member : scopes_.back().node->members) {
     if (std::find(known.begin(), known.end(), member.key) != known.end()) continue;
-    const Visit visit(*this, member.key);
-    if (const auto number = integer_of(member.value, range))
-      value[member.key] = *number;
-    else
-      wrong(member.value, expected_integer(range, unit));
+    on_field(member.key, value[member.key], range, unit, "");
   }
+}
+
+void Reader::others(std::map<std::string, double>& value, RealRange range, const char* unit, const char*) {
+  for (const Member& member : scopes_.back().node->members) real(member.key, value[member.key], range, unit);
 }
 
 /// Says why a key of the whole machine is none of one resource, or under which names its numbers stand there. Absent if

@@ -122,6 +122,15 @@ class Reader : public RowVisitor<Reader> {
   void workload(std::string_view key, WorkloadConfig& value, const char*);
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>& value, const char*);
   void others(std::map<std::string, std::int64_t>& value, IntRange range, const char* unit, const char*);
+  void others(std::map<std::string, double>& value, RealRange range, const char* unit, const char*);
+  template <class T>
+  void members(std::map<std::string, T>& value, const char*) {
+    const Node* const node = scopes_.back().node;
+    for (const Member& member : node->members) {
+      const Visit visit(*this, member.key);
+      read(member.value, value[member.key]);
+    }
+  }
 
  private:
   struct Scope {

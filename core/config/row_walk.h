@@ -71,8 +71,10 @@ class RowWalk {
   void effects(std::string_view, ShadingConfig::Effects&, const char*) {}
   void workload(std::string_view, WorkloadConfig&, const char*) {}
   void vary(std::string_view, std::map<std::string, std::vector<std::string>>&, const char*) {}
-  template <class... Rest>
-  void others(std::map<std::string, std::int64_t>&, const Rest&...) {}
+  template <class Number, class... Rest>
+  void others(std::map<std::string, Number>&, const Rest&...) {}
+  template <class T>
+  void members(std::map<std::string, T>&, const char*) {}
 
  protected:
   bool in_override() const { return in_override_; }

@@ -168,6 +168,15 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     others_["unit"] = unit;
     others_["description"] = meaning;
   }
+  void others(std::map<std::string, double>&, RealRange range, const char* unit, const char* meaning) {
+    others_ = real(range);
+    if (*unit) others_["unit"] = unit;
+    others_["description"] = meaning;
+  }
+  template <class T>
+  void members(std::map<std::string, T>&, const char* meaning) {
+    others_ = object(T{}, meaning);
+  }
   void vary(std::string_view key, std::map<std::string, std::vector<std::string>>&, const char* meaning) {
     const Json scalar{{"type", {"string", "number", "boolean"}}};
     put(key,
@@ -228,6 +237,8 @@ void walk(const Json& schema, const std::string& path, const VisitKey& visit) {
     visit(child, value);
     walk(value, child, visit);
   }
+  if (const auto others = schema.find("additionalProperties"); others != schema.end() && others->is_object())
+    walk(*others, path + ".NAME", visit);
 }
 
 /// Writes beside each enumeration, and each other key of the table, which engines take the values that not all take.

@@ -122,6 +122,13 @@ class JsonWriter : public RowVisitor<JsonWriter> {
   void others(std::map<std::string, std::int64_t>& value, IntRange, const char*, const char*) {
     for (const auto& [name, number] : value) put(name, number);
   }
+  void others(std::map<std::string, double>& value, RealRange, const char*, const char*) {
+    for (const auto& [name, number] : value) put(name, number);
+  }
+  template <class T>
+  void members(std::map<std::string, T>& value, const char*) {
+    for (const auto& [name, of] : value) put(name, object(of));
+  }
 
  private:
   void put(std::string_view key, Json value) { out_[std::string(key)] = std::move(value); }

@@ -10,6 +10,8 @@ struct IntersectionCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
   std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0, exact_volumes = 0, refined = 0, transforms_in_double = 0;
   std::uint64_t full_inversions = 0, extra_box_hits = 0, micromap_lookups = 0, micromap_known = 0, buffer_steps = 0;
+  std::uint64_t programs = 0, program_cycles = 0;
+  std::uint64_t simple_instructions = 0, product_instructions = 0, divide_instructions = 0, branch_instructions = 0;
 
   static constexpr auto counters() {
     using C = IntersectionCounts;
@@ -39,6 +41,18 @@ struct IntersectionCounts {
                 "children whose box the ray hits and which a cull plane showed to be missed"},
         Counter{"procedural", &C::procedural, "tests",
                 "tests of a ray against a procedural primitive; only if the scene has any", Shown::kProcedural},
+        Counter{"programs", &C::programs, "tests",
+                "those of the tests of procedural primitives that ran a program, of primitives", Shown::kPrograms},
+        Counter{"program_cycles", &C::program_cycles, "cycles",
+                "time of these programs in a unit, by the latencies of programs", Shown::kPrograms},
+        Counter{"simple_instructions", &C::simple_instructions, "instructions",
+                "instructions of programs: sums, comparisons, moves, loads and reported hits", Shown::kPrograms},
+        Counter{"product_instructions", &C::product_instructions, "instructions", "likewise, mul and fma",
+                Shown::kPrograms},
+        Counter{"divide_instructions", &C::divide_instructions, "instructions", "likewise, div and sqrt",
+                Shown::kPrograms},
+        Counter{"branch_instructions", &C::branch_instructions, "instructions",
+                "likewise, if, else, loop, end, break and stop", Shown::kPrograms},
         Counter{"any_hit", &C::any_hit_calls, "tests",
                 "any-hit calls: lookups of the opacity of a primitive that is not opaque; only if the scene has any",
                 Shown::kAnyHit},

@@ -16,12 +16,13 @@ enum class Shown : std::uint8_t {
   kQuantised,   ///< runs with quantised nodes
   kMicromaps,   ///< runs that look primitives that are not opaque up in opacity micromaps first
   kNearest,     ///< runs whose rays look for several nearest hits
+  kPrograms,    ///< runs whose scene has primitives with programs
 };
 
 /// The features of a machine and its scene that decide which numbers its report shows.
 struct RunFeatures {
   bool cull_planes = false, bundles = false, procedural = false, any_hit = false, any_hit_units = false,
-       quantised = false, micromaps = false, nearest = false;
+       quantised = false, micromaps = false, nearest = false, programs = false;
 
   constexpr bool show(Shown shown) const {
     switch (shown) {
@@ -45,6 +46,8 @@ struct RunFeatures {
         return micromaps;
       case Shown::kNearest:
         return nearest;
+      case Shown::kPrograms:
+        return programs;
     }
     return false;
   }

@@ -6,7 +6,7 @@
 
 #include "core/config/parts.h"
 #include "core/statistics/byte_row.h"
-#include "core/types/unit_kind.h"
+#include "core/statistics/intersection_counts.h"
 
 namespace carousel::ringbus {
 
@@ -14,7 +14,7 @@ namespace carousel::ringbus {
 /// it: a packet's tests when the first of them begins, a message when it is sent.
 struct EnergyEvents {
   struct OfResource {
-    PerUnit<std::uint64_t> tests{};
+    IntersectionCounts tests;
     std::uint64_t record_reads = 0;  ///< records of rays and bundles read for tests, by either port of the store
     std::uint64_t packet_rays = 0;   ///< members of packets that it issued
     std::uint64_t shape_reads = 0;   ///< spans of shape data that were needed

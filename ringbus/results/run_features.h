@@ -27,7 +27,8 @@ inline RunFeatures features_of(const Config& config, const accel::Accel& accel) 
           .any_hit_units = has_units(config, scene_facts(accel), UnitKind::kAnyHit),
           .quantised = config.bvh.storage == BvhConfig::Storage::kQuantised,
           .micromaps = has_units(config, scene_facts(accel), UnitKind::kMicromap),
-          .nearest = config.rays.query.nearest > 0};
+          .nearest = config.rays.query.nearest > 0,
+          .programs = !accel.programs.empty()};
 }
 
 }  // namespace carousel::ringbus

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "core/program/program.h"
 #include "core/types/aabb.h"
 #include "core/types/ids.h"
 #include "core/types/vec.h"
@@ -100,11 +101,20 @@ struct Material {
   } anisotropy;
 };
 
-/// A sphere as such, not triangulated, in model space; an instance may stretch it to an ellipsoid.
+/// Stands for a sphere, whose hits need no program.
+inline constexpr std::uint32_t kNoProgram = 0xffffffffu;
+
+/// A sphere as such, not triangulated, in model space; an instance may stretch it to an ellipsoid. Or a primitive whose
+/// hits a program finds within a box: then `center` and `radius` are those of a sphere around the box.
 struct Sphere {
   Vec3 center{0};
   float radius = 1;  ///< > 0, finite
-  MaterialId material;
+  MaterialId material{};
+  std::uint32_t program = kNoProgram;  ///< in Scene::programs
+  Vec3 half{0};                        ///< with a program: from the middle of the box to its sides
+
+  /// From the middle to the sides of the box.
+  Vec3 reach() const { return program == kNoProgram ? Vec3(radius) : half; }
 };
 
 /// Triangles of one glTF mesh, its primitives concatenated in order, then spheres: `primitive` in a hit counts
@@ -213,6 +223,7 @@ struct Scene {
   std::vector<GroupPlacement> placements;  ///< placements of groups, parents before those inside
   std::vector<NamedNode> nodes;            ///< in depth-first order; a file may give one name to several
   Motion motion;                           ///< what may move; instances and meshes stand still
+  std::vector<RayProgram> programs;        ///< of primitives, whose numbers Sphere::program names
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;  ///< at least one: the file's, or one that was made up
   Sky sky;

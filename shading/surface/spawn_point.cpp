@@ -85,17 +85,19 @@ double spawn_distance(const TriangleGeometry& g) {
 
 Vec3 spawn_point(const TriangleGeometry& g, Side side, SpawnOffset offset) {
   const DVec3 n = side == Side::kFront ? g.normal : -g.normal;
+  const DVec3 from =
+      g.error > 0 ? g.position + g.error * glm::length(glm::transpose(g.linear) * g.normal) * n : g.position;
   switch (offset) {
     case SpawnOffset::kEpsilon:
-      return Vec3(g.position) + 1e-4f * Vec3(n);
+      return Vec3(from) + 1e-4f * Vec3(n);
     case SpawnOffset::kUlp: {
-      const Vec3 p(g.position), normal(n);
+      const Vec3 p(from), normal(n);
       return {offset_by_ulps(p.x, normal.x), offset_by_ulps(p.y, normal.y), offset_by_ulps(p.z, normal.z)};
     }
     case SpawnOffset::kBound:
       break;
   }
-  const DVec3 p = g.position + spawn_distance(g) * n;
+  const DVec3 p = from + spawn_distance(g) * n;
   return {round_outwards(p.x, n.x), round_outwards(p.y, n.y), round_outwards(p.z, n.z)};
 }
 

@@ -30,6 +30,24 @@ TriangleGeometry sphere_geometry(const scene::Sphere& sphere, const scene::Affin
   return g;
 }
 
+/// A point that a program found, with all corners together as those of a sphere.
+TriangleGeometry program_geometry(const RayProgram& program, const scene::Affine& world, const Ray& ray,
+                                  const Hit& hit) {
+  TriangleGeometry g;
+  g.linear = DMat3(world.linear);
+  g.translation = DVec3(world.translation);
+  g.mirrored = glm::determinant(g.linear) < 0.0;
+  const DMat3 inverse = glm::inverse(g.linear);
+  g.position = DVec3(ray.origin) + double{hit.t} * DVec3(ray.direction);
+  const DVec3 point = inverse * (g.position - g.translation);
+  g.model = {point, point, point};
+  g.weights = {1.0, 0.0, 0.0};
+  const DVec3 stretched = glm::transpose(inverse) * from_octahedral(hit.u, hit.v);
+  g.normal = stretched / glm::length(stretched);
+  g.error = double{program.offset};
+  return g;
+}
+
 }  // namespace
 
 TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
@@ -63,6 +81,17 @@ TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t inst
   g.area = 0.5 * length;
   g.normal = length > 0.0 ? cross / (g.mirrored ? -length : length) : DVec3(0.0, 0.0, 1.0);
   return g;
+}
+
+TriangleGeometry hit_geometry(const scene::Scene& scene, const Ray& ray, const Hit& hit) {
+  const scene::Instance& placed = scene.instances[hit.instance];
+  const scene::Mesh& mesh = scene.meshes[placed.mesh.value];
+  if (hit.primitive >= mesh.triangle_count()) {
+    const scene::Sphere& bounds = mesh.spheres[hit.primitive - mesh.triangle_count()];
+    if (bounds.program != scene::kNoProgram)
+      return program_geometry(scene.programs[bounds.program], placed.world_from_model, ray, hit);
+  }
+  return triangle_geometry(scene, hit.instance, hit.primitive, hit.u, hit.v);
 }
 
 }  // namespace carousel::shading

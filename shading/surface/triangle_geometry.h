@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 
+#include "core/types/ray.h"
 #include "core/types/vec.h"
 #include "scene/model/scene.h"
 
@@ -19,6 +20,7 @@ struct TriangleGeometry {
   DVec3 normal;                   ///< world, unit, on the front (counter-clockwise) side
   double area = 0;                ///< world; 0 for a degenerate triangle, whose normal is then +z
   bool mirrored = false;          ///< the instance turns the winding; `normal` has that undone
+  double error = 0;               ///< model space: how far a program's hit may be off along its normal
 };
 
 /// Or of a sphere (scene::Mesh::spheres), whose front is its outside; `u` and `v` are then those of
@@ -28,5 +30,8 @@ struct TriangleGeometry {
 /// space (its vertices rounded to float there), so that is the geometry returned for it.
 TriangleGeometry triangle_geometry(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
                                    float v);
+
+/// The geometry of where a ray hit. A program tells the normal alone, and the point is that of the ray.
+TriangleGeometry hit_geometry(const scene::Scene& scene, const Ray& ray, const Hit& hit);
 
 }  // namespace carousel::shading

@@ -54,7 +54,7 @@ void PathTracer::pass_shadow(const RayResult& result, Worker& worker, RayBatch& 
   const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
   const Surface& own = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
   if (!own.pane) return;
-  const TriangleGeometry geometry = triangle_geometry(scene_, hit.instance, hit.primitive, hit.u, hit.v);
+  const TriangleGeometry geometry = hit_geometry(scene_, result.ray, hit);
   const Vec3 wo = -glm::normalize(result.ray.direction);
   const bool front = glm::dot(geometry.normal, DVec3(wo)) >= 0.0;
   const Vec3 facing = Vec3(front ? geometry.normal : -geometry.normal);

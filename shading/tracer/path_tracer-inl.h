@@ -88,7 +88,7 @@ void PathTracer::shade_surface(const RayResult& result, const TrianglePoint& poi
     return;
   }
   if constexpr (kClass != SurfaceClass::kUnlit) {
-    const TriangleGeometry geometry = triangle_geometry(scene_, hit.instance, hit.primitive, hit.u, hit.v);
+    const TriangleGeometry geometry = hit_geometry(scene_, result.ray, hit);
     const Vec3 wo = -result.ray.direction;
     const bool front = glm::dot(geometry.normal, DVec3(wo)) >= 0.0;
     if constexpr (kLights >= Lights::kEmissive) {

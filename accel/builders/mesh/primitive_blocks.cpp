@@ -1,5 +1,7 @@
 #include "accel/builders/mesh/primitive_blocks.h"
 
+#include <bit>
+
 #include "accel/structure/sphere.h"
 
 namespace carousel::accel {
@@ -16,7 +18,7 @@ BuildPrimitives primitive_boxes(const BlasMeshes& meshes, Executor& executor, co
         for (std::size_t k = 0; k < 3; ++k) box.extend(mesh->positions[mesh->indices[3 * std::size_t{index} + k]]);
       } else {
         const scene::Sphere& sphere = meshes.front().spheres[i - triangles];
-        box = sphere_box(sphere.center, sphere.radius);
+        box = box_around(sphere.center, sphere.reach());
       }
       out[at].lo = box.lo;
       out[at].hi = box.hi;
@@ -39,6 +41,8 @@ bool fill_block(const BlasMeshes& meshes, const scene::Opacity& opacity, const s
       const scene::Sphere& sphere = meshes.front().spheres[number - meshes.triangles()];
       set(0, sphere.center);
       block.vertex[1][0][lane] = sphere.radius;
+      block.vertex[1][1][lane] = std::bit_cast<float>(sphere.program);
+      set(2, sphere.reach());
       calls_any_hit = opacity.may_be_non_opaque(sphere);
     } else {
       const auto [mesh, index] = meshes.triangle(number);

@@ -22,7 +22,9 @@ namespace carousel::config {
 //   choices(key, vector of enum, meaning)
 //   texts(key, vector of texts, meaning)
 //   effects, workload, vary(key, value, meaning)   the three with a syntax of their own
-//   others(map of name to integer, range, unit, meaning)   numbers under any other name; the last row of its section
+//   others(map of name to integer or real, range, unit, meaning)   numbers under any other name; the last row of its
+//                                               section
+//   members(map of name to struct, meaning)     sections under any name; the only row of its section
 //   own_key(row of kOwnKeys, optional integer)             a number in which a resource differs
 // A row goes on with what else is known of its key (Row).
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "core/config/fields/field.h"
 #include "core/types/vec.h"
@@ -45,6 +48,43 @@ struct AnimationConfig {
   float time = 0;
 };
 
+/// The time of an instruction by its class, from its issue until its result may be read.
+struct ProgramsConfig {
+  std::int64_t simple_cycles = 4, product_cycles = 4, divide_cycles = 16, branch_cycles = 2;
+};
+
+struct PrimitiveBounds {
+  Vec3 low{-1}, high{1};
+};
+
+struct PrimitiveParameters {
+  std::map<std::string, double> values;  ///< by name
+};
+
+/// A primitive whose hits an intersection program finds (core/program).
+struct PrimitiveConfig {
+  PrimitiveBounds bounds;
+  double offset = 1e-4;
+  PrimitiveParameters parameters;
+  std::vector<std::string> program;  ///< an instruction each
+};
+
+struct PrimitivesConfig {
+  std::map<std::string, PrimitiveConfig> named;
+};
+
+/// A primitive of PrimitivesConfig where it stands in the scene.
+struct SceneObject {
+  static constexpr std::string_view kRequired = "primitive";
+  static constexpr std::string_view kRowPath = "";
+
+  std::string primitive;
+  Vec3 at{0}, turn{0};
+  float scale = 1;
+  Vec3 color{0.8f};
+  float metallic = 0, roughness = 0.5f;
+};
+
 struct SceneConfig {
   std::string file;
   std::optional<BuiltinScene> builtin;
@@ -57,6 +97,7 @@ struct SceneConfig {
   std::optional<float> time;  ///< of all animations; absent, as `animation` is: the base pose, or 0
   std::optional<AnimationConfig> animation;
   std::optional<SkyConfig> sky;
+  std::vector<SceneObject> objects;
   ScenePlacement placement = ScenePlacement::kReplicated;
 };
 
@@ -79,6 +120,56 @@ template <class V>
 void describe(V& v, AnimationConfig& c) {
   v.field("name", c.name, "", "The name of the animation, or its index in the file.");
   v.field("time", c.time, kMoment, "seconds", "The time at which it is shown. Times after its end are its end.");
+}
+
+inline constexpr IntRange kInstructionCycles{1, 255};
+inline constexpr RealRange kModelSpace{-1e6, 1e6};
+
+template <class V>
+void describe(V& v, ProgramsConfig& c) {
+  v.field("simple_cycles", c.simple_cycles, kInstructionCycles, "cycles",
+          "The time from a sum, a comparison or a move until its result may be read. A unit issues one instruction a "
+          "cycle, in order, when the operands are there.");
+  v.field("product_cycles", c.product_cycles, kInstructionCycles, "cycles", "Likewise for mul and fma.");
+  v.field("divide_cycles", c.divide_cycles, kInstructionCycles, "cycles", "Likewise for div and sqrt.");
+  v.field("branch_cycles", c.branch_cycles, kInstructionCycles, "cycles",
+          "The time from an if, else, loop, end, break or stop until the next instruction is issued.");
+}
+
+template <class V>
+void describe(V& v, PrimitiveBounds& c) {
+  v.field("low", c.low, kModelSpace, "model units", "The lower corner of the box. A hit outside of the box is none.");
+  v.field("high", c.high, kModelSpace, "model units", "The upper corner.");
+}
+
+template <class V>
+void describe(V& v, PrimitiveParameters& c) {
+  v.others(c.values, RealRange{-1e30, 1e30}, "", "A number that the program loads by this name.");
+}
+
+template <class V>
+void describe(V& v, PrimitiveConfig& c) {
+  v.section("bounds", c.bounds, "The box around the primitive, in its own space.");
+  v.field("offset", c.offset, RealRange{0, 1e6}, "model units",
+          "The error of a hit along its normal. Rays that leave the surface start so far away from it.");
+  v.section("parameters", c.parameters, "Numbers that the program loads.");
+  v.texts("program", c.program, "The instructions, one a line (docs/how-it-works/programs.md).");
+}
+
+template <class V>
+void describe(V& v, PrimitivesConfig& c) {
+  v.members(c.named, "A primitive of this name, which scene.objects places.");
+}
+
+template <class V>
+void describe(V& v, SceneObject& c) {
+  v.field("primitive", c.primitive, "", "The primitive, a name of `primitives`.");
+  v.field("at", c.at, kModelSpace, "scene units", "The place of the origin of its space.");
+  v.field("turn", c.turn, RealRange{-360, 360}, "degrees", "It is turned about x, then about y, then about z.");
+  v.field("scale", c.scale, RealRange{0, 1e6, true}, "", "The size of its unit in the scene.");
+  v.field("color", c.color, RealRange{0, 1}, "linear RGB", "The base colour of its material.");
+  v.field("metallic", c.metallic, RealRange{0, 1}, "", "The share of metal in its material.");
+  v.field("roughness", c.roughness, RealRange{0, 1}, "", "The roughness of its material.");
 }
 
 template <class V>
@@ -109,6 +200,7 @@ void describe(V& v, SceneConfig& c) {
       "sky", c.sky,
       "A sky of one colour, or of an environment map. Without this key a built-in scene has its own sky, and a file "
       "has the default.");
+  v.list("objects", c.objects, "Primitives of `primitives` that stand in the scene beside what it has.");
   v.choice("placement", c.placement,
            "With engine.transport mpi each rank has the whole acceleration structure, or with partitioned that of its "
            "share of the meshes; packets then start where their shape is, and bring it along.");

@@ -11,6 +11,7 @@
 #include "core/config/load/frame_rules.h"
 #include "core/config/load/memory_rules.h"
 #include "core/config/load/network_rules.h"
+#include "core/config/load/program_rules.h"
 #include "core/config/load/query_rules.h"
 #include "core/config/load/rank_rules.h"
 #include "core/config/load/treelet_rules.h"
@@ -55,6 +56,7 @@ class Rules {
     config::check_network(c, options_.force, breach);
     config::check_ranks(c, breach);
     config::check_warps(c, breach);
+    config::check_programs(c, positions_, issues_);
     sampling_fits();
     vary_names_keys();
     return std::move(issues_);

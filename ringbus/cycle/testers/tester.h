@@ -82,7 +82,7 @@ class Tester {
     PerUnit<std::uint64_t> vectors{};
     for (const UnitKindRow& row : kUnitKinds)
       if (row.stage != Stage::kAnyHit || stages_.inline_any_hit)
-        vectors[row.kind] = starts(row.kind, ray.tests[row.kind], {1});
+        vectors[row.kind] = starts(row.kind, ray.passes(row.kind), {1});
     return stages_.through(banks_, at, vectors);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
@@ -226,7 +226,8 @@ class Tester {
     UnitBank::Reservation met = moved;
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
-      const UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, of));
+      UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, of));
+      own.last = std::max(own.last, moved.last + program_time(row.kind, counts));
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
     const UnitBank::Reservation known =
@@ -234,6 +235,11 @@ class Tester {
     const UnitBank::Reservation seen =
         tested(banks_[UnitKind::kAnyHit], known, starts(UnitKind::kAnyHit, lookups(counts), of));
     return tested(banks_[UnitKind::kHitBuffer], seen, starts(UnitKind::kHitBuffer, counts, of)).last;
+  }
+  /// The least time until the answer to a program of the last ray that comes: the mean of the programs is taken for it.
+  Cycle program_time(UnitKind kind, const IntersectionCounts& counts) const {
+    if (kind != UnitKind::kProcedural || counts.programs == 0) return 0;
+    return banks_[kind].latency() + (ceil_div(counts.program_cycles, counts.programs) - 1) * banks_[kind].interval();
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const {

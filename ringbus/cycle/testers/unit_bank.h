@@ -73,6 +73,7 @@ class UnitBank {
   }
 
   Cycle latency() const { return latency_; }
+  Cycle interval() const { return interval_; }
   Cycle free_at() const { return free_at_; }  ///< the first cycle in which a test may start
   Cycle busy() const { return busy_; }        ///< cycles taken over all time, as far as tests have been reserved
   std::uint64_t tests() const { return tests_; }

@@ -19,11 +19,13 @@ inline constexpr std::uint64_t kExactVolumeTests = 8;
 
 /// Passes through the units of a kind that the tests in `counts` need: one for each test. A triangle that a ray meets
 /// in 32 bits is tested again in 64, for its distance, and exact volumes take their tests; a transform for a nearly
-/// singular instance is in 64 bits.
+/// singular instance is in 64 bits. A program takes a pass a cycle of its own, and the unit takes the next test when it
+/// is over.
 inline std::uint64_t passes_of(UnitKind kind, const IntersectionCounts& counts) {
   const std::uint64_t tests = counts.*unit_row(kind).tests;
   if (kind == UnitKind::kTriangle)
     return tests + kDoublePasses * counts.refined + kExactVolumeTests * counts.exact_volumes;
+  if (kind == UnitKind::kProcedural) return tests - counts.programs + counts.program_cycles;
   if (kind == UnitKind::kTransform) return tests + (kDoublePasses - 1) * counts.transforms_in_double;
   return tests;
 }
@@ -35,16 +37,23 @@ inline std::uint64_t inversion_passes(const IntersectionCounts& counts) {
 }
 
 /// The passes that the tests of a single ray need at one strip. A strip has at most 128 triangles (eight leaves of 16
-/// in a mixed node), of 33 passes each where all of their volumes are exact.
+/// in a mixed node), of 33 passes each where all of their volumes are exact. Its programs have 2^31 passes at most.
 struct RayTests {
-  PerUnit<std::uint16_t> tests;  ///< by the kind of unit that makes them
-  std::uint8_t inversion = 0;    ///< ahead of them, through the transform units
+  PerUnit<std::uint16_t> tests;      ///< by the kind of unit that makes them
+  std::uint8_t inversion = 0;        ///< ahead of them, through the transform units
+  std::uint32_t program_cycles = 0;  ///< of these tests, those that run programs: passes beside `tests`
+  std::uint64_t passes(UnitKind kind) const {
+    return tests[kind] + (kind == UnitKind::kProcedural ? std::uint64_t{program_cycles} : 0);
+  }
   friend bool operator==(const RayTests&, const RayTests&) = default;
 };
 inline RayTests ray_tests(const IntersectionCounts& counts) {
   RayTests out;
   for (const UnitKindRow& row : kUnitKinds)
-    out.tests[row.kind] = static_cast<std::uint16_t>(passes_of(row.kind, counts));
+    if (row.kind != UnitKind::kProcedural)
+      out.tests[row.kind] = static_cast<std::uint16_t>(passes_of(row.kind, counts));
+  out.tests[UnitKind::kProcedural] = static_cast<std::uint16_t>(counts.procedural - counts.programs);
+  out.program_cycles = static_cast<std::uint32_t>(counts.program_cycles);
   out.inversion = static_cast<std::uint8_t>(inversion_passes(counts));
   return out;
 }

@@ -10,7 +10,7 @@ namespace carousel::ringbus::cycle {
 /// Fills in what the units, the ray store, the collections and the shape buffer of a resource have done.
 inline void read_energy(const Tester& tester, const ResourceStatistics& counts, const ShapeBufferCounts& shapes,
                         ResourceAgent::Work& work) {
-  for (const UnitKindRow& row : kUnitKinds) work.energy.tests[row.kind] = counts.tests.*row.tests;
+  work.energy.tests = counts.tests;
   work.energy.record_reads = counts.reads + tester.second_reads();
   work.energy.packet_rays = counts.packet_rays;
   work.energy.shape_reads = shapes.hits + shapes.merged + shapes.misses;

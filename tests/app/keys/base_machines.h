@@ -20,8 +20,23 @@ enum class BaseMachine {
   kBundles,     ///< with bundles
   kNative,      ///< run by the native engine
   kTraffic,     ///< synthetic traffic
-  kLinks        ///< with faults of links
+  kLinks,       ///< with faults of links
+  kOwn          ///< a primitive with a program
 };
+
+/// Instructions that find the way into a ball around the origin, of all classes.
+inline std::string ball_program() {
+  std::string out;
+  for (const char* line :
+       {"load r, r",        "mul a, dx, dx",    "fma a, dy, dy, a", "fma a, dz, dz, a", "mul b, ox, dx",
+        "fma b, oy, dy, b", "fma b, oz, dz, b", "mul c, ox, ox",    "fma c, oy, oy, c", "fma c, oz, oz, c",
+        "mul w, r, r",      "sub c, c, w",      "mul w, a, c",      "mul d, b, b",      "sub d, d, w",
+        "load z, 0",        "lt p, d, z",       "stop p",           "sqrt d, d",        "add t, b, d",
+        "neg t, t",         "div t, t, a",      "fma x, t, dx, ox", "fma y, t, dy, oy", "fma z, t, dz, oz",
+        "hit t, x, y, z"})
+    out += fmt::format("      - {}\n", line);
+  return out;
+}
 
 /// The configuration of a base machine.
 inline std::string text(BaseMachine machine) {
@@ -58,6 +73,11 @@ inline std::string text(BaseMachine machine) {
              "workload: {traffic: {rate: 0.3, packets: 2000}}\n";
     case BaseMachine::kLinks:
       return terrain + "faults: {links: {drop: 0.05, delay: 0.05}}\n" + cycle;
+    case BaseMachine::kOwn:  // a ball, which the name of the primitive makes a row's key
+      return "scene: {builtin: cornell, objects: [{primitive: NAME, at: [0, 1, 0]}]}\n"
+             "primitives:\n  NAME:\n    bounds: {low: [-0.6, -0.6, -0.6], high: [0.6, 0.6, 0.6]}\n"
+             "    parameters: {r: 0.5}\n    program:\n" +
+             ball_program() + slots + cycle;
   }
   return {};
 }

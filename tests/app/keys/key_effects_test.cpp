@@ -80,7 +80,8 @@ const std::vector<std::string> kScene{"scene.",  "camera.",   "image.", "engine.
                                       "report.", "sampling.", "verify", "workload."};
 const std::vector<std::string> kMachine{"topology.",    "frames.", "clocks.",  "prefetcher.", "rays.",   "packets.",
                                         "collections.", "memory.", "shading.", "faults.",     "energy.", "area."};
-const std::vector<std::string> kTests{"bvh.", "accuracy.", "cull_planes.", "bundles.", "testers."};
+const std::vector<std::string> kTests{"bvh.",     "accuracy.",   "cull_planes.", "bundles.",
+                                      "testers.", "primitives.", "programs."};
 
 bool is_of(const std::string& key, const std::vector<std::string>& sections) {
   return std::any_of(sections.begin(), sections.end(),

@@ -127,6 +127,15 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
     value.clear();
     if (pick(2) == 1) value = {{"far", range.min}, {"slow_link", range.max}};
   }
+  void others(std::map<std::string, double>& value, config::RealRange range, const char*, const char*) {
+    value.clear();
+    if (pick(2) == 1) value = {{"big", real(range)}, {"small", real(range)}};
+  }
+  template <class T>
+  void members(std::map<std::string, T>& value, const char*) {
+    value.clear();
+    if (pick(2) == 1) fill(value["one"]);
+  }
   void vary(std::string_view, std::map<std::string, std::vector<std::string>>& value, const char*) {
     value.clear();
     if (pick(2) == 1) value = {{"packets.rays", {"1", "2..8*2"}}, {"verify,engine.kind", {"(none,native)"}}};

@@ -53,10 +53,29 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
     EXPECT_EQ(with[row.name]["per_ray"], static_cast<double>(count++) / 4) << row.name;
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
-  EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "plane", "triangle", "refined", "bundle", "transforms",
-                                                  "transforms_in_double", "inversions", "full_inversions",
-                                                  "exact_volumes", "extra_box_hits", "culled", "procedural", "any_hit",
-                                                  "micromap", "micromap_known", "ray_reads"}));
+  EXPECT_EQ(keys(with), (std::vector<std::string>{"box",
+                                                  "plane",
+                                                  "triangle",
+                                                  "refined",
+                                                  "bundle",
+                                                  "transforms",
+                                                  "transforms_in_double",
+                                                  "inversions",
+                                                  "full_inversions",
+                                                  "exact_volumes",
+                                                  "extra_box_hits",
+                                                  "culled",
+                                                  "procedural",
+                                                  "programs",
+                                                  "program_cycles",
+                                                  "simple_instructions",
+                                                  "product_instructions",
+                                                  "divide_instructions",
+                                                  "branch_instructions",
+                                                  "any_hit",
+                                                  "micromap",
+                                                  "micromap_known",
+                                                  "ray_reads"}));
 }
 
 TEST(ReportSections, DerivedNumbersAreOfTheCounters) {

@@ -18,7 +18,7 @@ struct WalkStep {
   accel::NodeKey key;
   RayTests tests;  ///< with an inversion wherever the ray needs one, also if another ray's will do
 };
-static_assert(sizeof(WalkStep) <= sizeof(accel::NodeKey) + 2 * kUnitKinds.size() + 4);  // as small as it can be
+static_assert(sizeof(WalkStep) <= sizeof(accel::NodeKey) + 2 * kUnitKinds.size() + 8);  // as small as it can be
 
 /// The ways of a visit's rays, one behind the other.
 struct WalkSteps {
