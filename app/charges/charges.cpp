@@ -52,7 +52,8 @@ std::string value_of(const nlohmann::ordered_json& config, std::string_view key)
 bool makes_use(const Charge& charge, const LocatedConfig& located, const nlohmann::ordered_json& json,
                const SceneFacts& scene) {
   const std::string_view key = charge.key;
-  if (key.empty()) return value_of(json, charge.where_key) == charge.where_value;
+  if (key.empty())
+    return value_of(json, charge.where_key) == charge.where_value && in_use(located.config, scene, charge.where_key);
   return value_of(json, key) == charge.free && in_use(located.config, scene, key);
 }
 

@@ -34,8 +34,9 @@ TEST(ReportSections, EveryKindOfUnitStandsUnderItsName) {
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
   // The order of the table of unit kinds.
-  EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural",
-                                                  "any_hit", "micromap", "dispatch_busy", "dispatch_idle"}));
+  EXPECT_EQ(keys(with),
+            (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural", "any_hit",
+                                      "micromap", "hit_buffer", "dispatch_busy", "dispatch_idle"}));
 }
 
 TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
@@ -75,6 +76,7 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
                                                   "any_hit",
                                                   "micromap",
                                                   "micromap_known",
+                                                  "buffer_steps",
                                                   "ray_reads"}));
 }
 
