@@ -176,6 +176,16 @@ TEST_F(FramesRun, AnOldTreeWearsOutAndIsFoundSo) {
   }
 }
 
+// Units that trace their own rays take the tests of the depth-first tracer in the refitted structure.
+TEST_F(FramesRun, ARefittedTreeIsVisitedAsOftenAsOutsideTheMachine) {
+  const Json report = run(kBalls, {"frames={count: 3, step: 1}", "engine.kind=cycle", "topology.shape=independent"});
+  for (const int i : {1, 2}) {
+    const Json& row = report["frames"]["rows"][static_cast<std::size_t>(i)];
+    const double tests = row["depth_first_tests"];
+    EXPECT_NEAR(row["box_tests"].get<double>() + row["primitive_tests"].get<double>(), tests, 0.01 * tests);
+  }
+}
+
 // Where nothing moves the second frame finds all of the structure in the caches. Where a part moves, lines leave them.
 TEST_F(FramesRun, CachesStayWarm) {
   const Json still = run(kWaves, {"frames={count: 2, step: 0, update: none}", "engine.kind=cycle"});
