@@ -207,7 +207,7 @@ inline std::vector<KeyRow> key_rows() {
       {"testers.any_hit_unit.latency_cycles", kLayers, {}, {"90"}},
       {"testers.micromap_unit.units",
        kFoliage,
-       {"bvh.micromaps.states=four", "testers.micromap_unit.units=8", "testers.micromap_unit.interval_cycles=9"},
+       {"bvh.micromaps.states=four", "testers.micromap_unit.units=8", "testers.micromap_unit.interval_cycles=90"},
        {"1"}},
       {"testers.micromap_unit.interval_cycles",
        kFoliage,
