@@ -14,6 +14,7 @@
 #include "scene/model/camera_pose.h"
 #include "scene/model/fitted_camera.h"
 #include "scene/model/key_light.h"
+#include "scene/model/quantise.h"
 
 namespace carousel::scene {
 
@@ -88,6 +89,7 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
   if (config.sky && !config.sky->file.empty())
     map = find_file("scene.sky.file", "an environment map (.hdr or .exr)", config.sky->file, config_dir);
   Scene scene = config.builtin ? make_builtin(config) : load_file(config, config_dir, warn, images, executor);
+  if (config.quantise > 0) quantise(scene, static_cast<int>(config.quantise));
   if (map) {
     scene.sky = {Vec3{0}, load_sky_map(*map, *config.sky, warn)};
   } else if (config.sky || !config.builtin) {

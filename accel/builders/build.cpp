@@ -18,6 +18,7 @@
 #include "accel/builders/rank_shares.h"
 #include "accel/builders/top_children.h"
 #include "accel/cut/tree_cut.h"
+#include "accel/packed/packed_leaves.h"
 #include "accel/planes/cull_planes.h"
 #include "core/system/error.h"
 #include "scene/model/opacity.h"
@@ -335,11 +336,12 @@ Accel build(const scene::Scene& scene, const BvhConfig& config, Executor& execut
             const CullPlanesConfig& planes, const BuildRanks* ranks, const TreeFile* trees) {
   Accel accel = AccelBuilder(scene, config, executor, accuracy, planes, ranks, trees).run();
   std::vector<std::uint32_t> as_floats;
-  if (config.storage == BvhConfig::Storage::kQuantised) {
-    quantise_boxes(accel);
+  if (is_quantised(config.storage)) {
+    quantise_boxes(accel, plane_bits(config.storage));
     if (config.treelets.bytes > 0) as_floats = unquantised_nodes(accel);
   }
   if (config.treelets.bytes > 0) accel.pieces = std::make_shared<const TreePieces>(cut_tree(accel, config, as_floats));
+  if (config.leaves == BvhConfig::Leaves::kBlocks) accel.packed = std::make_shared<const PackedLeaves>(accel);
   return accel;
 }
 

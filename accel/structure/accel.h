@@ -25,6 +25,8 @@
 
 namespace carousel::accel {
 
+class PackedLeaves;
+
 /// One placement of a bottom-level structure.
 struct InstanceNode {
   NodeRef root;  ///< inner node or leaf of the mesh's BLAS
@@ -59,6 +61,7 @@ struct Accel {
   std::shared_ptr<const Partition> partition;  ///< null: all shapes are here
   std::shared_ptr<GuestShapes> guests;         ///< shapes of other ranks while packets bring them; with `partition`
   std::shared_ptr<const TreePieces> pieces;    ///< null: the tree is not cut (`bvh.treelets`)
+  std::shared_ptr<const PackedLeaves> packed;  ///< null: leaves are not compressed (`bvh.leaves: blocks`)
   const AnyHit* any_hit = nullptr;  ///< answers any-hit calls, set before tracing; null: every surface is opaque
   const scene::OpacityMicromaps* micromaps = nullptr;  ///< asked before `any_hit`, set with it; may be null
   MicromapPlaces micromap_places;                      ///< bytes of the micromaps, by block; empty without

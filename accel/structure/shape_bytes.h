@@ -12,8 +12,13 @@ namespace carousel::accel {
 // triangle.
 inline constexpr std::uint32_t kSmallNodeBytes = 64, kSmallWidth = 6, kLargeNodeBytes = 80, kQuantisedLeafBytes = 64;
 
+// With 12 bits a plane 9 bytes a child for its box and 4 for its reference, and beside these an origin, scales and
+// kinds.
+inline constexpr std::uint32_t kQuantised12Bytes = 128;
+
 /// Bytes of a node in the machine's memory, without what stands behind it.
 inline std::uint32_t node_bytes(const Accel& accel, const BvhConfig& bvh) {
+  if (bvh.storage == BvhConfig::Storage::kQuantised12) return kQuantised12Bytes;
   if (bvh.storage == BvhConfig::Storage::kQuantised)
     return bvh.width <= kSmallWidth ? kSmallNodeBytes : kLargeNodeBytes;
   if (accel.elements.empty()) return sizeof(Node);
@@ -32,9 +37,9 @@ inline std::uint32_t bytes_behind(const Accel& accel, const Node& node) {
   return static_cast<std::uint32_t>(bytes);
 }
 
-/// Bytes of a leaf of triangles, or of procedural primitives, that is not stored as strips.
+/// Bytes of a leaf of triangles, or of procedural primitives, that is not stored as strips or in compressed blocks.
 inline std::uint32_t leaf_bytes(NodeRef leaf, BvhConfig::Storage storage) {
-  if (storage == BvhConfig::Storage::kQuantised) return leaf.triangles() * kQuantisedLeafBytes;
+  if (is_quantised(storage)) return leaf.triangles() * kQuantisedLeafBytes;
   return leaf.blocks() * static_cast<std::uint32_t>(sizeof(TriangleBlock));
 }
 

@@ -98,6 +98,7 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   out.dram_utilisation = ratio(c.memory.busy, c.cycles * c.memories);
   out.ray_data = c.ray_data;
   out.triangle_strips = c.strips;
+  if (c.blocks) out.triangle_blocks = {*c.blocks, c.structure_bytes};
   if (config.l2_write == MemoryConfig::Write::kBack) out.drain = c.drain;
   if (c.dram) out.dram = dram_section(*c.dram);
   return out;

@@ -34,6 +34,7 @@ constexpr std::array kCharges{
     Charge{"waiting_hits", "nodes and hits that wait for a later round are moved in no time, and always find room", "",
            "", "", "rays.query.rounds", "resume"},
     Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage", "quantised"},
+    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage", "quantised_12"},
 };
 
 /// The value of a key as `--set` takes it; empty if the configuration has none.

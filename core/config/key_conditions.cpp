@@ -162,6 +162,7 @@ constexpr Row kRows[] = {
     {"testers.hit_buffer", kCycle},
     {"primitives", kObjects},
     {"programs", kObjects},
+    {"testers.decoder", kCycle},
     {"testers.simd", kCycle},
     {"testers.simd.map", kVectors},
     {"testers.simd.reformat_cycles", kVectors},
@@ -322,6 +323,8 @@ constexpr const Condition* condition_of(UnitKind kind) {
       return &kMicromaps;
     case UnitKind::kHitBuffer:
       return &kNearest;
+    case UnitKind::kDecoder:
+      return &kPackedLeaves;
     default:  // every scene puts the others to use
       return nullptr;
   }

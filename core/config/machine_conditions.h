@@ -241,6 +241,8 @@ inline constexpr Condition kProcedural{[](const C&, const S& s) { return s.proce
                                        "the scene has no procedural primitives"};
 inline constexpr Condition kAnyHit{[](const C&, const S& s) { return s.any_hit; }, "every surface is opaque"};
 inline constexpr Condition kAnyHitUnits{asks_units, "no units decide any-hit calls"};
+inline constexpr Condition kPackedLeaves{
+    [](const C& c, const S&) { return c.bvh.leaves == BvhConfig::Leaves::kBlocks; }, "leaves are not compressed"};
 inline constexpr Condition kAnyHitShaders{
     [](const C& c, const S& s) { return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kShader; },
     "no shader worker decides any-hit calls"};

@@ -9,7 +9,8 @@ namespace carousel {
 struct IntersectionCounts {
   std::uint64_t box = 0, triangle = 0, procedural = 0, plane = 0, bundle = 0, transforms = 0;
   std::uint64_t any_hit_calls = 0, culled = 0, inversions = 0, exact_volumes = 0, refined = 0, transforms_in_double = 0;
-  std::uint64_t full_inversions = 0, extra_box_hits = 0, micromap_lookups = 0, micromap_known = 0, buffer_steps = 0;
+  std::uint64_t full_inversions = 0, extra_box_hits = 0, micromap_lookups = 0, micromap_known = 0, buffer_steps = 0,
+                decoded = 0;
   std::uint64_t programs = 0, program_cycles = 0;
   std::uint64_t simple_instructions = 0, product_instructions = 0, divide_instructions = 0, branch_instructions = 0;
 
@@ -65,6 +66,10 @@ struct IntersectionCounts {
         Counter{"buffer_steps", &C::buffer_steps, "steps",
                 "comparisons of a hit with those in a ray's sorted buffer, each with a shift, with rays.query.nearest",
                 Shown::kNearest},
+        Counter{"decoded", &C::decoded, "blocks",
+                "compressed blocks decoded: by a visit once for all of its rays, but once for each ray that goes "
+                "through a subtree or the whole tree by itself",
+                Shown::kBlocks},
     };
   }
   /// The counters above that are tests; a new kind of test belongs here too.

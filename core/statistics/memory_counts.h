@@ -59,4 +59,23 @@ struct LeafStripCounts {
   friend bool operator==(const LeafStripCounts&, const LeafStripCounts&) = default;
 };
 
+/// The leaves of a structure in compressed blocks (`bvh.leaves: blocks`).
+struct PackedLeafCounts {
+  std::uint64_t leaves = 0, triangles = 0, blocks = 0, raw_blocks = 0, vertices = 0, bytes = 0;
+
+  static constexpr auto counters() {
+    using C = PackedLeafCounts;
+    return std::array{
+        Counter{"leaves", &C::leaves, "leaves", "leaves of triangles"},
+        Counter{"triangles", &C::triangles, "triangles", "triangles of these leaves"},
+        Counter{"blocks", &C::blocks, "blocks", "blocks of 128 bytes that hold them"},
+        Counter{"raw_blocks", &C::raw_blocks, "blocks",
+                "those of the blocks that hold up to three triangles as floats, since these are on no common grid"},
+        Counter{"vertices", &C::vertices, "vertices", "vertices of all blocks"},
+        Counter{"bytes", &C::bytes, "bytes", "bytes of all blocks"},
+    };
+  }
+  friend bool operator==(const PackedLeafCounts&, const PackedLeafCounts&) = default;
+};
+
 }  // namespace carousel

@@ -17,12 +17,13 @@ enum class Shown : std::uint8_t {
   kMicromaps,   ///< runs that look primitives that are not opaque up in opacity micromaps first
   kNearest,     ///< runs whose rays look for several nearest hits
   kPrograms,    ///< runs whose scene has primitives with programs
+  kBlocks,      ///< runs with compressed leaves
 };
 
 /// The features of a machine and its scene that decide which numbers its report shows.
 struct RunFeatures {
   bool cull_planes = false, bundles = false, procedural = false, any_hit = false, any_hit_units = false,
-       quantised = false, micromaps = false, nearest = false, programs = false;
+       quantised = false, micromaps = false, nearest = false, programs = false, blocks = false;
 
   constexpr bool show(Shown shown) const {
     switch (shown) {
@@ -48,6 +49,8 @@ struct RunFeatures {
         return nearest;
       case Shown::kPrograms:
         return programs;
+      case Shown::kBlocks:
+        return blocks;
     }
     return false;
   }

@@ -28,7 +28,8 @@ enum class UnitKind : std::uint8_t {
   kProcedural,
   kAnyHit,
   kMicromap,
-  kHitBuffer
+  kHitBuffer,
+  kDecoder
 };
 
 /// The place of a kind in the order of a visit's tests.
@@ -40,6 +41,7 @@ enum class Stage : std::uint8_t {
   kMicromap,   ///< then the opacity micromaps of the triangles that are hit
   kAnyHit,     ///< then the opacity of the primitives that are hit
   kHitBuffer,  ///< then hits are put into the sorted buffers of rays
+  kDecode,     ///< ahead of primitives, and beside transforms: compressed leaves
 };
 
 struct UnitKindRow {
@@ -80,6 +82,9 @@ inline constexpr auto kUnitKinds = std::to_array<UnitKindRow>({
     {UnitKind::kHitBuffer, "hit_buffer", "hit_buffer", "hit_buffer_steps",
      "Units that put hits into the sorted buffers of rays, a comparison and a shift a step.", 1, 1, 1,
      &IntersectionCounts::buffer_steps, Stage::kHitBuffer, Shown::kNearest},
+    {UnitKind::kDecoder, "decoder", "decoder", "decoded_blocks",
+     "Units that decode blocks of triangles, with bvh.leaves: blocks. Each test is a block.", 1, 4, 8,
+     &IntersectionCounts::decoded, Stage::kDecode, Shown::kBlocks},
 });
 
 constexpr std::size_t unit_index(UnitKind kind) {

@@ -188,6 +188,8 @@ class CycleRun {
     c.memories = machine_.memory().memories().size();
     if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->bytes();
     if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().counts();
+    if (const accel::PackedLeaves* blocks = machine_.shapes().blocks()) c.blocks = blocks->counts();
+    c.structure_bytes = machine_.shapes().size_bytes();
     if (complete) c.drain = machine_.drain(end);
     for (const auto& cache : machine_.memory().caches()) {
       c.caches.push_back(cache->statistics());

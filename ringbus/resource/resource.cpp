@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 
+#include "accel/packed/packed_leaves.h"
 #include "ringbus/resource/traversal/make_traversal.h"
 #include "ringbus/resource/visit/visit_context.h"
 
@@ -43,6 +44,7 @@ TraversalSettings traversal_settings(const ResourceSettings& settings) {
 Resource::Resource(const ResourceSettings& settings, const accel::Accel& accel, RayStore& store,
                    const ResourceHooks& hooks)
     : events_(hooks.events),
+      accel_(accel),
       store_(store),
       root_(hooks.blocks != nullptr ? hooks.blocks->name(accel.root_key()) : accel.root_key()),
       packet_rays_(static_cast<std::size_t>(settings.packets.rays)),
@@ -85,6 +87,7 @@ TestOutcome Resource::test(Packet& packet) {
   const auto members = static_cast<std::uint32_t>(local_.size());
   outcome.reads = members;
   if (members > 0) traversal_->test(packet, local_, outcome);
+  if (members > 0) outcome.counts.decoded += decoded_blocks(packet, outcome);
   outcome.rays = local_.size();
   outcome.any_hit_calls = any_hit_.calls();
   record({.kind = EventKind::kTest,
@@ -101,6 +104,19 @@ TestOutcome Resource::test(Packet& packet) {
           .runs = outcome.runs,
           .members = packet.members});
   return outcome;
+}
+
+/// Compressed blocks that a visit decodes, once for all of its rays. Those that go through a subtree count their own.
+std::uint64_t Resource::decoded_blocks(const Packet& packet, const TestOutcome& outcome) const {
+  if (accel_.packed == nullptr || is_treelet(packet.key)) return 0;
+  if (outcome.nodes.empty()) return accel::blocks_to_decode(accel_, packet.key.ref);
+  std::vector<std::uint32_t> leaves;
+  for (const NextNode& node : outcome.nodes) leaves.push_back(node.key.ref.bits());
+  std::sort(leaves.begin(), leaves.end());
+  leaves.erase(std::unique(leaves.begin(), leaves.end()), leaves.end());
+  std::uint64_t blocks = 0;
+  for (const std::uint32_t leaf : leaves) blocks += accel::blocks_to_decode(accel_, accel::NodeRef::from_bits(leaf));
+  return blocks;
 }
 
 std::size_t Resource::retire(Packet& packet) {

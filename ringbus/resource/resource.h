@@ -95,7 +95,10 @@ class Resource {
       events_->record(event);
   }
 
+  std::uint64_t decoded_blocks(const Packet& packet, const TestOutcome& outcome) const;
+
   EventSink* events_;
+  const accel::Accel& accel_;
   RayStore& store_;
   accel::NodeKey root_;
   std::size_t packet_rays_;

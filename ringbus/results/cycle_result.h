@@ -131,8 +131,10 @@ struct CycleResult {
   std::size_t memories = 1;
   std::optional<RayDataBytes> ray_data;  ///< if any is in memory
   CacheDrain drain;
-  std::optional<LeafStripCounts> strips;  ///< with `bvh.leaves: strips`
-  std::optional<DramUse> dram;            ///< use of DRAM with banks
+  std::optional<LeafStripCounts> strips;   ///< with `bvh.leaves: strips`
+  std::optional<PackedLeafCounts> blocks;  ///< with `bvh.leaves: blocks`
+  std::uint64_t structure_bytes = 0;       ///< of the whole structure in the machine's memory
+  std::optional<DramUse> dram;             ///< use of DRAM with banks
   ShadingCounts shading;
   std::uint64_t hops = 0;
   Log2Histogram residence;                           ///< times of rays from their slot until shading has their hit

@@ -25,10 +25,11 @@ inline RunFeatures features_of(const Config& config, const accel::Accel& accel) 
           .procedural = accel.procedural_primitives,
           .any_hit = accel.calls_any_hit(),
           .any_hit_units = has_units(config, scene_facts(accel), UnitKind::kAnyHit),
-          .quantised = config.bvh.storage == BvhConfig::Storage::kQuantised,
+          .quantised = is_quantised(config.bvh.storage),
           .micromaps = has_units(config, scene_facts(accel), UnitKind::kMicromap),
           .nearest = config.rays.query.nearest > 0,
-          .programs = !accel.programs.empty()};
+          .programs = !accel.programs.empty(),
+          .blocks = config.bvh.leaves == BvhConfig::Leaves::kBlocks};
 }
 
 }  // namespace carousel::ringbus

@@ -21,8 +21,8 @@ struct BvhConfig {
   } micromaps;
   enum class Elements { kBoxes, kSpheres, kOrientedBoxes } elements = Elements::kBoxes;
   std::int64_t mixed_triangles = 0;
-  enum class Storage { kFull, kQuantised } storage = Storage::kFull;
-  enum class Leaves { kTriangles, kStrips } leaves = Leaves::kTriangles;
+  enum class Storage { kFull, kQuantised, kQuantised12 } storage = Storage::kFull;
+  enum class Leaves { kTriangles, kStrips, kBlocks } leaves = Leaves::kTriangles;
   std::int64_t top_triangles = 0;
   std::int64_t levels = 2;
   enum class Builder { kSah, kSpatial, kOctree, kKd } builder = Builder::kSah;
@@ -47,13 +47,13 @@ inline constexpr auto kEnumNames<BvhConfig::Micromaps::States> = [] {
 template <>
 inline constexpr auto kEnumNames<BvhConfig::Storage> = [] {
   using enum BvhConfig::Storage;
-  return names<BvhConfig::Storage>({{kFull, "full"}, {kQuantised, "quantised"}});
+  return names<BvhConfig::Storage>({{kFull, "full"}, {kQuantised, "quantised"}, {kQuantised12, "quantised_12"}});
 }();
 
 template <>
 inline constexpr auto kEnumNames<BvhConfig::Leaves> = [] {
   using enum BvhConfig::Leaves;
-  return names<BvhConfig::Leaves>({{kTriangles, "triangles"}, {kStrips, "strips"}});
+  return names<BvhConfig::Leaves>({{kTriangles, "triangles"}, {kStrips, "strips"}, {kBlocks, "blocks"}});
 }();
 
 template <>
@@ -73,6 +73,15 @@ inline constexpr auto kEnumNames<BvhConfig::Quality> = [] {
   using enum BvhConfig::Quality;
   return names<BvhConfig::Quality>({{kFast, "fast"}, {kHigh, "high"}});
 }();
+
+/// Bits of a plane of a node's boxes; 0 where planes are floats.
+constexpr int plane_bits(BvhConfig::Storage storage) {
+  using enum BvhConfig::Storage;
+  return storage == kQuantised ? 8 : storage == kQuantised12 ? 12 : 0;
+}
+constexpr bool is_quantised(BvhConfig::Storage storage) {
+  return plane_bits(storage) > 0;
+}
 
 namespace config {
 
@@ -112,10 +121,11 @@ void describe(V& v, BvhConfig& c) {
   v.choice(
       "storage", c.storage,
       "Nodes hold their children's boxes as floats, or in 8 bits a plane, outward; these have 64 bytes up to a width "
-      "of 6, and 80 above.");
+      "of 6, and 80 above. With quantised_12 a plane has 12 bits, and a node 128 bytes.");
   v.choice("leaves", c.leaves,
-           "Leaves hold three vertices for each triangle, or strips of triangles that share vertices.")
-      .only(EngineKind::kCycle, "simulated memory", BvhConfig::Leaves::kStrips);
+           "Leaves hold three vertices for each triangle, or strips of triangles that share vertices; or they stand in "
+           "compressed blocks of 128 bytes, which a unit decodes (docs/how-it-works/memory.md).")
+      .only(EngineKind::kCycle, "simulated memory", BvhConfig::Leaves::kStrips, BvhConfig::Leaves::kBlocks);
   v.field(
       "top_triangles", c.top_triangles, IntRange{0, 16}, "triangles",
       "A mesh that stands in the world without a transform and is one leaf of at most this size has no structure of "

@@ -99,6 +99,7 @@ struct SceneConfig {
   std::optional<SkyConfig> sky;
   std::vector<SceneObject> objects;
   ScenePlacement placement = ScenePlacement::kReplicated;
+  std::int64_t quantise = 0;  ///< bits; 0: vertices stay where they are
 };
 
 namespace config {
@@ -204,6 +205,10 @@ void describe(V& v, SceneConfig& c) {
   v.choice("placement", c.placement,
            "With engine.transport mpi each rank has the whole acceleration structure, or with partitioned that of its "
            "share of the meshes; packets then start where their shape is, and bring it along.");
+  v.field(
+      "quantise", c.quantise, IntRange{0, 24}, "bits",
+      "The vertices of each mesh are moved to the nearest points of a grid with at most 2 to this power steps along "
+      "the longest side of the mesh's box. With 0 they stay where they are.");
 }
 
 }  // namespace config

@@ -18,6 +18,7 @@ class MemoryRules {
       breach_("engine.kind", "workload: memory_trace runs in virtual time; expected cycle, found native");
     quantised_nodes_fit();
     leaves_fit();
+    blocks_fit();
     builder_fits();
     quality_fits();
     shared_caches_fit();
@@ -40,7 +41,7 @@ class MemoryRules {
  private:
   // A quantised node holds boxes of its children and references, and is decoded as a whole.
   void quantised_nodes_fit() {
-    if (c.bvh.storage != BvhConfig::Storage::kQuantised) return;
+    if (!is_quantised(c.bvh.storage)) return;
     constexpr std::string_view without = ", or bvh.storage: full";
     if (c.bvh.elements != BvhConfig::Elements::kBoxes)
       breach_("bvh.elements", fmt::format("quantised nodes hold boxes; expected boxes{}; found {}", without,
@@ -82,6 +83,30 @@ class MemoryRules {
     if (c.packets.shapes == PacketShapes::kSingle)
       breach_("packets.shapes",
               "a strip of triangles is decoded as a whole; expected strip, or bvh.leaves: triangles; found single");
+  }
+
+  // A block is decoded as a whole, ahead of the units that test its triangles.
+  void blocks_fit() {
+    if (c.bvh.leaves != BvhConfig::Leaves::kBlocks) return;
+    constexpr std::string_view without = ", or bvh.leaves: triangles";
+    const auto refuse = [&](bool wrong, const char* key, const std::string& message) {
+      if (wrong) breach_(key, message);
+    };
+    refuse(c.scene.quantise == 0, "scene.quantise",
+           fmt::format("vertices that are on no grid are not compressed; expected 1 to 24{}; found 0", without));
+    refuse(c.packets.shapes == PacketShapes::kSingle, "packets.shapes",
+           fmt::format("a block of triangles is decoded as a whole; expected strip{}; found single", without));
+    refuse(c.bvh.mixed_triangles > 0, "bvh.mixed_triangles",
+           fmt::format("nodes hold no compressed triangles; expected 0{}; found {}", without, c.bvh.mixed_triangles));
+    refuse(c.bvh.top_triangles > 0, "bvh.top_triangles",
+           fmt::format("nodes hold no compressed triangles; expected 0{}; found {}", without, c.bvh.top_triangles));
+    refuse(c.memory.strip_end == MemoryConfig::StripEnd::kFlag, "memory.strip_end",
+           fmt::format("the length of a block is known; expected length{}; found flag", without));
+    refuse(c.topology.form == CentralForm::kDistributor && is_central(c.topology), "topology.form",
+           fmt::format("testers behind a distributor have no decoder; expected another form{}; found distributor",
+                       without));
+    refuse(c.scene.placement == ScenePlacement::kPartitioned, "scene.placement",
+           fmt::format("blocks are not partitioned yet; expected replicated{}; found partitioned", without));
   }
 
   // Elements other than boxes, and cull planes, are fitted to whole primitives, and their margins to hits in the

@@ -47,8 +47,8 @@ void check_treelets(const Config& c, const RuleBreach& breach) {
   if (packets) check_collections(c, breach);
   if (c.bvh.leaves != BvhConfig::Leaves::kTriangles)
     breach("bvh.leaves",
-           "strips are not cut into treelets yet; expected triangles, or bvh.treelets.bytes: 0; found "
-           "strips");
+           fmt::format("{0} are not cut into treelets yet; expected triangles, or bvh.treelets.bytes: 0; found {0}",
+                       enum_name(c.bvh.leaves)));
   if (c.memory.strip_end == MemoryConfig::StripEnd::kFlag)
     breach("memory.strip_end",
            "the length of a treelet is known; expected length, or bvh.treelets.bytes: 0; found flag");

@@ -35,6 +35,22 @@ void describe(V& v, const ShapeBuffers& r) {
           "hits over strips and transforms needed");
 }
 
+/// Leaves in compressed blocks.
+struct TriangleBlocks {
+  PackedLeafCounts counts;
+  std::uint64_t structure_bytes = 0;
+};
+
+template <class V>
+void describe(V& v, const TriangleBlocks& r) {
+  describe(v, r.counts);
+  v.field("bytes_per_triangle", ratio(r.counts.bytes, r.counts.triangles), "bytes", "bytes of blocks over triangles");
+  v.field("structure_bytes_per_triangle", ratio(r.structure_bytes, r.counts.triangles), "bytes",
+          "bytes of the whole structure, nodes included, over triangles");
+  v.field("vertices_per_block", ratio(r.counts.vertices, r.counts.blocks), "vertices", "mean number of vertices");
+  v.field("triangles_per_block", ratio(r.counts.triangles, r.counts.blocks), "triangles", "mean number of triangles");
+}
+
 struct Memory {
   ShapeBuffers shape_buffers;
   std::vector<Cache> caches;
@@ -44,6 +60,7 @@ struct Memory {
   std::optional<RayDataBytes> ray_data;
   std::optional<CacheDrain> drain;
   std::optional<LeafStripCounts> triangle_strips;
+  std::optional<TriangleBlocks> triangle_blocks;
   std::optional<Dram> dram;
 };
 
@@ -56,6 +73,7 @@ void describe(V& v, const Memory& r) {
   v.field("dram_utilisation", r.dram_utilisation, "fraction", "fraction of the run's cycles in which DRAM moved lines");
   v.section("ray_data", r.ray_data, "data of rays and paths in memory");
   v.section("triangle_strips", r.triangle_strips, "leaves in strips of triangles");
+  v.section("triangle_blocks", r.triangle_blocks, "leaves in compressed blocks of triangles");
   v.section("drain", r.drain, "written lines that were in caches at the end of the run");
   v.section("dram", r.dram, "DRAM with banks");
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "accel/builders/quantised_boxes.h"
+#include "accel/packed/packed_leaves.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/shape_bytes.h"
 #include "accel/transform/instance_data.h"
@@ -35,10 +36,11 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
-/// nodes have 64 or 80 bytes, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and
-/// each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips. A leaf has the micromaps of its
-/// triangles in it, each behind its triangle, so that whoever reads the triangle reads them. With `bvh.treelets` nodes
-/// and leaves stand where their pieces say (accel::TreePieces).
+/// nodes have 64 or 80 bytes, or 128 with 12 bits a plane, but for those that keep their boxes as floats
+/// (accel/builders/quantised_boxes.h), and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold
+/// LeafStrips, and with `blocks` they are accel::PackedLeaves, from a 128-byte border on. A leaf has the micromaps of
+/// its triangles in it, each behind its triangle, so that whoever reads the triangle reads them. With `bvh.treelets`
+/// nodes and leaves stand where their pieces say (accel::TreePieces).
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
@@ -49,10 +51,10 @@ class ShapeMemory {
   ShapeMemory(const accel::Accel& accel, const AccuracyConfig& accuracy, const BvhConfig& bvh = {},
               const MemoryConfig& memory = {})
       : accel_(accel),
-        quantised_(bvh.storage == BvhConfig::Storage::kQuantised),
+        quantised_(is_quantised(bvh.storage)),
         node_bytes_(accel::node_bytes(accel, bvh)),
         strips_(bvh.leaves == BvhConfig::Leaves::kStrips ? LeafStrips(accel) : LeafStrips()),
-        blocks_at_((accel.nodes.size() * node_bytes_ + bytes_behind_nodes() + 63) / 64 * 64),
+        blocks_at_(aligned(accel.nodes.size() * node_bytes_ + bytes_behind_nodes(), accel.packed ? 128 : 64)),
         instances_at_(accel.pieces ? accel.pieces->bytes : (blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
         instance_bytes_(accel::instance_bytes(accuracy)),
         promoted_bytes_(accel::promoted_bytes(accuracy)),
@@ -83,7 +85,7 @@ class ShapeMemory {
   /// its own cull planes and the primitives that the node holds for it. A primitive of a leaf is its 40 bytes of a
   /// block.
   ShapeSpan shapes(accel::NodeKey key, std::uint32_t lanes) const {
-    if (std::popcount(lanes) != 1) return strip(key);
+    if (std::popcount(lanes) != 1 || (accel_.packed && !key.ref.is_inner())) return strip(key);
     const ShapeSpan whole = room(key);
     const int lane = std::countr_zero(lanes);
     if (!key.ref.is_inner()) {
@@ -120,6 +122,8 @@ class ShapeMemory {
 
   /// With `bvh.leaves: strips`.
   const LeafStrips& strips() const { return strips_; }
+  /// With `bvh.leaves: blocks`, else null.
+  const accel::PackedLeaves* blocks() const { return accel_.packed.get(); }
 
   /// True if a test at `key` reads its instance's record although no ray is transformed there.
   bool reads_record(accel::NodeKey key) const {
@@ -150,6 +154,10 @@ class ShapeMemory {
       const std::uint64_t behind = behind_before_[node + 1] - behind_before_[node];
       return {address + behind_before_[node], static_cast<std::uint32_t>(node_bytes_ + behind)};
     }
+    if (accel_.packed) {
+      const accel::PackedLeaves::Place& place = accel_.packed->place(key.ref);
+      return {blocks_at_ + place.begin, place.bytes};
+    }
     if (strips_.holds(key.ref)) return {blocks_at_ + strips_.begin(key.ref), strips_.bytes(key.ref)};
     const std::uint64_t begin = blocks_at_ + accel_.micromap_places.before(key.ref.first_block());
     const std::uint32_t maps = accel_.micromap_places.of(key.ref);
@@ -159,6 +167,7 @@ class ShapeMemory {
     return {begin + std::uint64_t{key.ref.first_block()} * sizeof(accel::TriangleBlock),
             key.ref.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock)) + maps};
   }
+  static std::uint64_t aligned(std::uint64_t bytes, std::uint64_t to) { return (bytes + to - 1) / to * to; }
   std::uint32_t bytes_in_piece(accel::NodeRef ref) const {
     if (!ref.is_inner())
       return accel::leaf_bytes(ref, quantised_ ? BvhConfig::Storage::kQuantised : BvhConfig::Storage::kFull);
@@ -190,6 +199,7 @@ class ShapeMemory {
 
   /// Fills in primitives_before_ where each primitive has a leaf's bytes for itself; the bytes in all.
   std::uint64_t bytes_of_leaves() {
+    if (accel_.packed) return accel_.packed->bytes();
     if (strips_.bytes() > 0) return strips_.bytes();
     const std::uint64_t maps = accel_.micromap_places.all();
     if (!quantised_) return accel_.blocks.size() * sizeof(accel::TriangleBlock) + maps;

@@ -9,7 +9,8 @@
 namespace carousel::ringbus::cycle {
 
 /// The way of a single ray through units of each kind (core/types/unit_kind.h): to model space, then boxes and planes,
-/// beside primitives of all kinds, their micromaps, their opacity and the sorted buffers of hits.
+/// beside primitives of all kinds, their micromaps, their opacity and the sorted buffers of hits. Compressed
+/// primitives are decoded first.
 struct RayStages {
   CullPlanesConfig::Order order = CullPlanesConfig::Order::kBoxFirst;
   bool inline_any_hit = true;
@@ -21,11 +22,12 @@ struct RayStages {
     const bool planes_first = order == CullPlanesConfig::Order::kPlanesFirst && starts[UnitKind::kPlane] > 0;
     const Cycle boxed = planes_first ? beside(UnitKind::kBox, beside(UnitKind::kPlane, moved))
                                      : beside(UnitKind::kPlane, beside(UnitKind::kBox, moved));
-    Cycle met = moved;
+    const Cycle known = std::max(moved, beside(UnitKind::kDecoder, at));
+    Cycle met = known;
     for (const UnitKindRow& row : kUnitKinds)
-      if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, moved));
-    const Cycle known = beside(UnitKind::kMicromap, met);
-    const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, known) : known;
+      if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, known));
+    const Cycle looked_up = beside(UnitKind::kMicromap, met);
+    const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, looked_up) : looked_up;
     return std::max(boxed, beside(UnitKind::kHitBuffer, seen));
   }
 };

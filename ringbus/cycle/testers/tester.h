@@ -61,7 +61,9 @@ class Tester {
     const Cycle inverse = inverted(bundled.first, counts);
     const UnitBank::Reservation moved = tested(banks_[UnitKind::kTransform], {inverse, std::max(inverse, bundled.last)},
                                                starts(UnitKind::kTransform, counts, of));
-    const Cycle end = std::max(boxes(moved, counts, of), primitives(moved, counts, of)) + lanes_.reformatting();
+    const Cycle decoded = decode(bundled.first, counts.decoded);
+    const UnitBank::Reservation known{std::max(moved.first, decoded), std::max(moved.last, decoded)};
+    const Cycle end = std::max(boxes(moved, counts, of), primitives(known, counts, of)) + lanes_.reformatting();
     return bundles.regrouped == 0 ? end : builder_.reserve(end, bundles.regrouped).last;
   }
 
@@ -83,6 +85,7 @@ class Tester {
     for (const UnitKindRow& row : kUnitKinds)
       if (row.stage != Stage::kAnyHit || stages_.inline_any_hit)
         vectors[row.kind] = starts(row.kind, ray.passes(row.kind), {1});
+    vectors[UnitKind::kDecoder] = ray.tests[UnitKind::kDecoder];
     return stages_.through(banks_, at, vectors);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
@@ -90,6 +93,11 @@ class Tester {
   Cycle invert(Cycle at, std::uint64_t passes) {
     passes_[UnitKind::kTransform] += passes;
     return banks_[UnitKind::kTransform].reserve(at, passes).last;
+  }
+  /// The time at which so many compressed blocks have been decoded. The units take them whole, not in lanes.
+  Cycle decode(Cycle at, std::uint64_t blocks) {
+    passes_[UnitKind::kDecoder] += blocks;
+    return blocks == 0 ? at : banks_[UnitKind::kDecoder].reserve(at, blocks).last;
   }
   /// The time at which `records` records that are wanted at `at` have been read, beside others.
   Cycle read(Cycle at, std::uint64_t records) { return reads_cost_ ? store_.reserve_beside(at, records).last : at; }
@@ -108,7 +116,7 @@ class Tester {
     for (const auto [kind, ledger] : units_) {
       result.units[kind] = ledger.use;
       result.units[kind].passes = passes_[kind];
-      result.units[kind].lanes = banks_[kind].tests() * lanes_.count();
+      result.units[kind].lanes = banks_[kind].tests() * (kind == UnitKind::kDecoder ? 1 : lanes_.count());
     }
     result.ray_reads = ray_reads_.use;
     result.primitive_ray_reads = primitive_reads_.use;

@@ -23,6 +23,28 @@ INSTANTIATE_TEST_SUITE_P(
             "build"},
         BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\nengine: {kind: cycle}\n",
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
+        BadConfig{"BlocksOnNoGrid", SCENE "engine: {kind: cycle}\nbvh: {leaves: blocks}\n",
+                  "test.yaml: scene.quantise: vertices that are on no grid are not compressed; expected 1 to 24, or "
+                  "bvh.leaves: triangles; found 0"},
+        BadConfig{"BlocksInNodes",
+                  "scene: {builtin: cornell, quantise: 12}\nengine: {kind: cycle}\nbvh: {leaves: blocks, "
+                  "mixed_triangles: 2}\n",
+                  "test.yaml:3:40: bvh.mixed_triangles: nodes hold no compressed triangles; expected 0, or bvh.leaves: "
+                  "triangles; found 2"},
+        BadConfig{"BlocksOfSingleShapes",
+                  "scene: {builtin: cornell, quantise: 12}\nengine: {kind: cycle}\nbvh: {leaves: blocks}\npackets: "
+                  "{shapes: single}\n",
+                  "test.yaml:4:19: packets.shapes: a block of triangles is decoded as a whole; expected strip, or "
+                  "bvh.leaves: triangles; found single"},
+        BadConfig{"BlocksBehindADistributor",
+                  "scene: {builtin: cornell, quantise: 12}\nengine: {kind: cycle}\nbvh: {leaves: blocks}\ntopology: "
+                  "{shape: central, form: distributor, resources: 1}\n",
+                  "test.yaml:4:35: topology.form: testers behind a distributor have no decoder; expected another form, "
+                  "or bvh.leaves: triangles; found distributor"},
+        BadConfig{"BlocksOfTheNativeEngine",
+                  "scene: {builtin: cornell, quantise: 12}\nengine: {kind: native}\nbvh: {leaves: blocks}\n",
+                  "test.yaml:3:15: bvh.leaves: the native engine has no simulated memory; expected triangles, or "
+                  "engine.kind: cycle; found blocks"},
         BadConfig{"CellsThatMove", SCENE "bvh: {builder: octree, quality: high}\n",
                   "test.yaml:2:33: bvh.quality: the nodes of bvh.builder: octree stay where space is divided; expected "
                   "fast, or bvh.builder: sah or spatial; found high"},

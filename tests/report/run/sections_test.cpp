@@ -36,7 +36,7 @@ TEST(ReportSections, EveryKindOfUnitStandsUnderItsName) {
   // The order of the table of unit kinds.
   EXPECT_EQ(keys(with),
             (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural", "any_hit",
-                                      "micromap", "hit_buffer", "dispatch_busy", "dispatch_idle"}));
+                                      "micromap", "hit_buffer", "decoder", "dispatch_busy", "dispatch_idle"}));
 }
 
 TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
@@ -77,6 +77,7 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
                                                   "micromap",
                                                   "micromap_known",
                                                   "buffer_steps",
+                                                  "decoded",
                                                   "ray_reads"}));
 }
 

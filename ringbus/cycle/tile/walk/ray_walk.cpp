@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "accel/packed/packed_leaves.h"
 #include "accel/primitive/nearest_ray.h"
 #include "ringbus/resource/visit/last_first.h"
 
@@ -80,6 +81,7 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
   if (accel::NearestRay* const several = accel::nearest_of(ray.records[*ray.slots])) several->visited();
   tests.transforms = tests.transforms_in_double = 0;  // the kernel's own, for every strip
   if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
+  tests.decoded = accel::blocks_to_decode(accel, key.ref);
   if (!key.ref.is_inner() || mask == 0) return tests;
   std::uint64_t bytes = 0;
   const std::size_t waiting = stack_.size();
