@@ -74,7 +74,7 @@ std::optional<report::Treelets> treelets(const Prepared& p) {
   return out;
 }
 
-report::Structure structure(const Prepared& p) {
+report::Structure structure(const Prepared& p, const ringbus::RunResult& result) {
   const accel::StructureSize size = p.structure ? *p.structure : accel::structure_size(p.accel);
   report::Structure out;
   out.primitives = size.primitives;
@@ -88,6 +88,8 @@ report::Structure structure(const Prepared& p) {
   const ringbus::cycle::ShapeMemory memory(p.accel, p.config().accuracy, p.config().bvh);
   out.bytes = memory.size_bytes();
   out.levels = structure_levels(p.accel, memory);
+  out.depths = structure_depths(p.accel, memory, result.cycle ? &*result.cycle : nullptr);
+  add_depths(*out.depths, *out.levels);
   out.treelets = treelets(p);
   return out;
 }
@@ -171,7 +173,7 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
   r.plugins = plugins_section(prepared.located.plugins);
   r.scene = summary(prepared);
-  r.structure = structure(prepared);
+  r.structure = structure(prepared, result);
   if (!prepared.accel.groups.empty()) r.levels = levels_section(prepared.accel);
   r.host = host(prepared, result);
   r.host.raster_seconds = job.raster_seconds();

@@ -1,6 +1,7 @@
 #include "app/build_report/structure_levels.h"
 
 #include <algorithm>
+#include <array>
 #include <set>
 #include <utility>
 
@@ -9,14 +10,19 @@ namespace carousel::app {
 namespace {
 
 enum Storey : std::size_t { kTop, kGroups, kMeshes };
+constexpr std::array kLevelNames{"top", "groups", "meshes"};
+
+/// Bytes of a node or leaf. A compressed block that several leaves share counts at the first of them.
+std::uint32_t own_bytes(const accel::Accel& accel, const ringbus::cycle::ShapeMemory& memory, accel::NodeRef ref) {
+  if (accel.packed && !ref.is_inner() && accel.packed->place(ref).first > 0) return 0;
+  return memory.strip({kNoInstance, ref}).bytes;
+}
 
 class LevelWalk {
  public:
   LevelWalk(const accel::Accel& accel, const ringbus::cycle::ShapeMemory& memory)
       : accel_(accel), memory_(memory), levels_(3) {
-    levels_[kTop].level = "top";
-    levels_[kGroups].level = "groups";
-    levels_[kMeshes].level = "meshes";
+    for (std::size_t i = 0; i < kLevelNames.size(); ++i) levels_[i].level = kLevelNames[i];
   }
 
   std::vector<report::StructureLevel> run() {
@@ -58,7 +64,7 @@ class LevelWalk {
       const auto [ref, depth] = open.back();
       open.pop_back();
       out.depth = std::max(out.depth, depth);
-      const std::uint32_t bytes = memory_.strip({root.instance, ref}).bytes;
+      const std::uint32_t bytes = own_bytes(accel_, memory_, ref);
       if (!ref.is_inner()) {
         ++out.leaves;
         out.leaf_bytes += bytes;
@@ -92,6 +98,52 @@ class LevelWalk {
 std::vector<report::StructureLevel> structure_levels(const accel::Accel& accel,
                                                      const ringbus::cycle::ShapeMemory& memory) {
   return LevelWalk(accel, memory).run();
+}
+
+std::vector<report::StructureDepth> structure_depths(const accel::Accel& accel,
+                                                     const ringbus::cycle::ShapeMemory& memory,
+                                                     const ringbus::cycle::CycleResult* cycle) {
+  const accel::StructureDepths& depths = *memory.depths();
+  std::vector<report::StructureDepth> out;
+  for (const accel::StructureDepths::Row& row : depths.rows()) {
+    out.push_back({kLevelNames[static_cast<std::size_t>(row.level)], row.depth, row.inner, row.leaves, row.children, 0,
+                   row.surface_cost, std::nullopt});
+    if (cycle != nullptr) out.back().reads.emplace();
+  }
+  std::vector<bool> seen(accel.blocks.size());
+  const auto add = [&](accel::NodeRef ref) {
+    if (ref.is_instance()) return;
+    const std::uint16_t row = depths.row(ref);
+    if (row == accel::StructureDepths::kNoRow) return;
+    if (!ref.is_inner()) {
+      if (seen[ref.first_block()]) return;
+      seen[ref.first_block()] = true;
+    }
+    out[row].bytes += own_bytes(accel, memory, ref);
+  };
+  for (std::uint32_t n = 0; n < accel.nodes.size(); ++n) {
+    add(accel::NodeRef::inner(n));
+    for (int lane = 0; lane < accel.nodes[n].count; ++lane)
+      if (!accel.nodes[n].child[lane].is_inner()) add(accel.nodes[n].child[lane]);
+  }
+  for (const accel::InstanceNode& instance : accel.instances)
+    if (!instance.root.is_inner()) add(instance.root);
+  if (!accel.root_key().ref.is_inner()) add(accel.root_key().ref);
+  if (cycle == nullptr) return out;
+  for (const ringbus::cycle::TileResult& tile : cycle->tiles)
+    for (std::size_t row = 0; row < tile.strip_reads.size(); ++row) *out[row].reads += tile.strip_reads[row];
+  return out;
+}
+
+void add_depths(const std::vector<report::StructureDepth>& depths, std::vector<report::StructureLevel>& levels) {
+  for (const report::StructureDepth& depth : depths)
+    for (report::StructureLevel& level : levels) {
+      if (level.level != depth.level) continue;
+      level.surface_cost += depth.surface_cost;
+      if (!depth.reads) continue;
+      if (!level.reads) level.reads.emplace();
+      *level.reads += *depth.reads;
+    }
 }
 
 }  // namespace carousel::app

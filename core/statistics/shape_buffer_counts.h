@@ -25,4 +25,22 @@ struct ShapeBufferCounts {
   friend bool operator==(const ShapeBufferCounts&, const ShapeBufferCounts&) = default;
 };
 
+/// Reads of the nodes and leaves at one depth of the structure.
+struct StripReads {
+  std::uint64_t needed = 0, misses = 0;
+
+  static constexpr auto counters() {
+    using C = StripReads;
+    return std::array{
+        Counter{"needed", &C::needed, "strips",
+                "times that a resource needed them from its shape buffer, lines with testers.simt; not as part of "
+                "treelets or blocks of memory"},
+        Counter{"misses", &C::misses, "strips",
+                "those that were fetched, since they were neither there nor on their "
+                "way"},
+    };
+  }
+  friend bool operator==(const StripReads&, const StripReads&) = default;
+};
+
 }  // namespace carousel

@@ -82,6 +82,10 @@ Html depth_section(const Json& report, const Json& schema) {
     out += table_of("structure-levels", "The structure, level by level", *levels,
                     schema_at(schema, "properties.structure.properties.levels.items"))
                .html();
+  if (const Json* rows = find(report, "structure.depths"))
+    out += table_of("structure-depths", "The structure, depth by depth", *rows,
+                    schema_at(schema, "properties.structure.properties.depths.items"))
+               .html();
   Html nodes = depths("node-depths", "Nodes by depth, and the work at them", find(report, "nodes.by_depth"),
                       schema_at(schema, "properties.nodes.properties.by_depth.items"),
                       "Heat map of nodes, visits, tests, hits and misses, by depth.");

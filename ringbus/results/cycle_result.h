@@ -71,6 +71,7 @@ struct TileResult {
   Utilisation dispatch;
   PacketKindCounts sent;
   ShapeBufferCounts shapes;
+  std::vector<StripReads> strip_reads;  ///< by row of accel::StructureDepths
   StackTraffic stack;
   SpillBytes spilled;
   TransformedRayBytes transformed_rays;  ///< kept beside the records

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "report/sections/structure/depths.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -10,6 +11,8 @@ struct StructureLevel {
   std::uint64_t structures = 0, inner_nodes = 0, leaves = 0, instances = 0, depth = 0;
   std::uint64_t children = 0;  ///< children of all inner nodes
   std::uint64_t node_bytes = 0, leaf_bytes = 0, record_bytes = 0;
+  double surface_cost = 0;
+  std::optional<StripReads> reads;
 
   std::uint64_t bytes() const { return node_bytes + leaf_bytes + record_bytes; }
 };
@@ -31,6 +34,8 @@ void describe(V& v, const StructureLevel& r) {
   v.field("record_bytes", r.record_bytes, "bytes",
           "records of the instances that lead here: transforms, boxes of members");
   v.field("bytes", r.bytes(), "bytes", "nodes, leaves and records");
+  v.field("surface_cost", r.surface_cost, "visits/ray", "sum of that of its depths in structure.depths");
+  v.section("reads", r.reads, "reads of its nodes and leaves by resources (cycle)");
 }
 
 /// The whole tree cut into connected pieces (`bvh.treelets`).
@@ -63,6 +68,7 @@ struct Structure {
   double surface_cost = 0;
   std::optional<std::uint64_t> bytes;
   std::optional<std::vector<StructureLevel>> levels;
+  std::optional<std::vector<StructureDepth>> depths;
   std::optional<Treelets> treelets;
 };
 
@@ -82,6 +88,7 @@ void describe(V& v, const Structure& r) {
       "bytes", r.bytes, "bytes",
       "size of the whole structure in the machine's memory, gaps for alignment included; absent where ranks share it");
   v.section("levels", r.levels, "the structure level by level, from the top down; absent where ranks share it");
+  v.section("depths", r.depths, "each level depth by depth; absent where ranks share the structure");
   v.section("treelets", r.treelets, "pieces of the whole tree; absent without bvh.treelets");
 }
 

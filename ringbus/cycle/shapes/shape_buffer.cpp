@@ -141,6 +141,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
   for (std::size_t which = 0; which < 2; ++which) {
     if (need[which].bytes == 0) continue;
     std::uint32_t& entry = state.entries[which];
+    count_read(need[which].row, entry == kNone);
     if (entry == kNone) {
       while (free_places_ < places_to_ask(need[which])) evict_oldest();
       entry = allocate(need[which], places_to_ask(need[which]));
@@ -154,6 +155,13 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
     if (!entries_[entry].here) wait_for(entry, user, which);
   }
   return true;
+}
+
+void ShapeBuffer::count_read(std::uint16_t row, bool missed) {
+  if (row == accel::StructureDepths::kNoRow) return;
+  if (row >= reads_.size()) reads_.resize(row + std::size_t{1});
+  ++reads_[row].needed;
+  reads_[row].misses += missed;
 }
 
 /// Gives room to those who wait for it: tests first, then the issue queue.

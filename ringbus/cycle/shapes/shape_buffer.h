@@ -88,6 +88,8 @@ class ShapeBuffer {
 
   std::size_t fetches() const { return fetches_; }  ///< on their way
   const ShapeBufferCounts& counts() const { return counts_; }
+  /// By row of accel::StructureDepths, up to the last that was needed.
+  const std::vector<StripReads>& reads() const { return reads_; }
   std::uint64_t lines_asked() const { return port_.lines(); }
 
  private:
@@ -127,6 +129,7 @@ class ShapeBuffer {
   void stop_waiting(std::uint32_t entry, std::uint32_t wait);
   void drop(UserState& state, User user);
   void serve(Cycle now);
+  void count_read(std::uint16_t row, bool missed);
   void grow_buckets();
   void take_pushed(Cycle now);
   std::size_t bucket(const ShapeSpan& span) const {
@@ -151,6 +154,7 @@ class ShapeBuffer {
   bool queue_changed_ = false;
   std::size_t fetches_ = 0;
   ShapeBufferCounts counts_;
+  std::vector<StripReads> reads_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -4,12 +4,14 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "accel/builders/quantised_boxes.h"
 #include "accel/packed/packed_leaves.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/shape_bytes.h"
+#include "accel/structure/structure_depths.h"
 #include "accel/transform/instance_data.h"
 #include "core/config/fields/bvh.h"
 #include "core/config/fields/memory.h"
@@ -24,6 +26,7 @@ struct ShapeSpan {
   /// Bytes of the longest strip of its kind, for a strip that ends by its flag (`memory.strip_end: flag`). Until its
   /// end has been found, this is all that is known of its length. 0: the asker knows the length.
   std::uint32_t most = 0;
+  std::uint16_t row = accel::StructureDepths::kNoRow;  ///< of a node or leaf
   friend bool operator==(const ShapeSpan& a, const ShapeSpan& b) {
     return a.address == b.address && a.bytes == b.bytes;
   }
@@ -62,12 +65,14 @@ class ShapeMemory {
                         (accel.groups.empty() ? 0 : accel::kMemberBytes + accel::kGroupBytes) + 63) /
                        64 * 64),
         records_(record_order(accel)) {
+    if (!accel.partition) depths_.emplace(accel);
     if (memory.strip_end == MemoryConfig::StripEnd::kFlag) end_by_flag();
   }
 
   /// The strip below `key`: a node with its children's boxes and planes, or a leaf's triangles.
   ShapeSpan strip(accel::NodeKey key) const {
     ShapeSpan span = room(key);
+    if (depths_) span.row = depths_->row(key.ref);
     if (most_leaf_ == 0) return span;
     if (!key.ref.is_inner()) {
       if (!strips_.holds(key.ref) && !quantised_)
@@ -122,6 +127,8 @@ class ShapeMemory {
 
   /// With `bvh.leaves: strips`.
   const LeafStrips& strips() const { return strips_; }
+  /// Null where ranks share the structure.
+  const accel::StructureDepths* depths() const { return depths_ ? &*depths_ : nullptr; }
   /// With `bvh.leaves: blocks`, else null.
   const accel::PackedLeaves* blocks() const { return accel_.packed.get(); }
 
@@ -262,8 +269,9 @@ class ShapeMemory {
   LeafStrips strips_;
   std::uint64_t blocks_at_, instances_at_;
   std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;
-  std::uint32_t most_node_ = 0, most_leaf_ = 0;  // bytes of the longest strip that ends by its flag; 0: none does
-  std::vector<std::uint32_t> records_;           // by instance: the place of its record; empty: its number
+  std::uint32_t most_node_ = 0, most_leaf_ = 0;   // bytes of the longest strip that ends by its flag; 0: none does
+  std::optional<accel::StructureDepths> depths_;  // of a structure that is here as a whole
+  std::vector<std::uint32_t> records_;            // by instance: the place of its record; empty: its number
 };
 
 }  // namespace carousel::ringbus::cycle

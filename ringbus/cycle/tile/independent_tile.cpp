@@ -219,6 +219,7 @@ TileResult IndependentTile::result() const {
   TileResult t;
   ledger_.fill_in(t);
   t.shapes = shapes_.counts();
+  t.strip_reads = shapes_.reads();
   t.stack = stack_;
   t.transformed_rays = transforms_.bytes();
   return t;

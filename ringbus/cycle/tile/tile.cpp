@@ -161,6 +161,7 @@ TileResult Tile::result() const {
   t.dispatch.busy = dispatch_.busy();
   t.sent = egress_.sent();
   t.shapes = shapes_.counts();
+  t.strip_reads = shapes_.reads();
   t.spilled = room_.moved();
   t.transformed_rays = transforms_.bytes();
   t.round_trips = retirement_.trips().latency();

@@ -26,7 +26,7 @@ class LineReads {
     for (const ShapeSpan& span : need) {
       if (span.bytes == 0) continue;
       const std::uint64_t last = (span.address + span.bytes - 1) / line_bytes_;
-      for (std::uint64_t line = span.address / line_bytes_; line <= last; ++line) lines += add(line, task);
+      for (std::uint64_t line = span.address / line_bytes_; line <= last; ++line) lines += add(line, task, span.row);
     }
     wanted_ += lines;
     return lines;
@@ -48,8 +48,11 @@ class LineReads {
       queue_.pop_front();
       ++read_;
       any = true;
-      if (shapes_.take(user, {ShapeSpan{reads_[user].line * line_bytes_, static_cast<std::uint32_t>(line_bytes_)}, {}},
-                       now))
+      if (shapes_.take(
+              user,
+              {ShapeSpan{reads_[user].line * line_bytes_, static_cast<std::uint32_t>(line_bytes_), 0, reads_[user].row},
+               {}},
+              now))
         arrive(user, now);
     }
     return any;
@@ -71,15 +74,17 @@ class LineReads {
  private:
   struct Read {
     std::uint64_t line = 0;
+    std::uint16_t row = accel::StructureDepths::kNoRow;  // of the first strip for which it was asked
     std::vector<std::uint32_t> tasks;
   };
 
   /// False if the task has asked for this line already: a strip and its transform may share one.
-  bool add(std::uint64_t line, std::uint32_t task) {
+  bool add(std::uint64_t line, std::uint32_t task, std::uint16_t row) {
     const auto [at, is_new] = group_.try_emplace(line, 0);
     if (is_new) {
       at->second = free_read();
       reads_[at->second].line = line;
+      reads_[at->second].row = row;
       queue_.push_back(at->second);
       ++reads_under_way_;
     }

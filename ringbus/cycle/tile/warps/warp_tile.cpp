@@ -250,6 +250,7 @@ TileResult WarpTile::result() const {
   TileResult t;
   ledger_.fill_in(t);
   t.shapes = shapes_.counts();
+  t.strip_reads = shapes_.reads();
   t.stack = ended_.stack();
   t.transformed_rays = transforms_.bytes();
   WarpCounts& warps = t.warps.emplace(log_.counts());
