@@ -23,9 +23,10 @@ INSTANTIATE_TEST_SUITE_P(
             "build"},
         BadConfig{"InverseInvertedAgain", SCENE "accuracy: {instance_data: rt, invert: visit}\nengine: {kind: cycle}\n",
                   "test.yaml:2:39: accuracy.invert: instance_data: rt is stored inverted; expected build, found visit"},
-        BadConfig{"BlocksOnNoGrid", SCENE "engine: {kind: cycle}\nbvh: {leaves: blocks}\n",
-                  "test.yaml: scene.quantise: vertices that are on no grid are not compressed; expected 1 to 24, or "
-                  "bvh.leaves: triangles; found 0"},
+        BadConfig{
+            "BlocksOnNoGrid", SCENE "engine: {kind: cycle}\nbvh: {leaves: blocks}\n",
+            "test.yaml:1:8: scene.quantise: vertices that are on no grid are not compressed; expected 1 to 24, or "
+            "bvh.leaves: triangles; found 0"},
         BadConfig{"BlocksInNodes",
                   "scene: {builtin: cornell, quantise: 12}\nengine: {kind: cycle}\nbvh: {leaves: blocks, "
                   "mixed_triangles: 2}\n",
@@ -39,12 +40,12 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"BlocksBehindADistributor",
                   "scene: {builtin: cornell, quantise: 12}\nengine: {kind: cycle}\nbvh: {leaves: blocks}\ntopology: "
                   "{shape: central, form: distributor, resources: 1}\n",
-                  "test.yaml:4:35: topology.form: testers behind a distributor have no decoder; expected another form, "
+                  "test.yaml:4:34: topology.form: testers behind a distributor have no decoder; expected another form, "
                   "or bvh.leaves: triangles; found distributor"},
-        BadConfig{"BlocksOfTheNativeEngine",
-                  "scene: {builtin: cornell, quantise: 12}\nengine: {kind: native}\nbvh: {leaves: blocks}\n",
-                  "test.yaml:3:15: bvh.leaves: the native engine has no simulated memory; expected triangles, or "
-                  "engine.kind: cycle; found blocks"},
+        BadConfig{
+            "BlocksOfTheNativeEngine",
+            "scene: {builtin: cornell, quantise: 12}\nengine: {kind: native}\nbvh: {leaves: blocks}\n",
+            "test.yaml:3:15: bvh.leaves: the native engine has no simulated memory; expected triangles, found blocks"},
         BadConfig{"CellsThatMove", SCENE "bvh: {builder: octree, quality: high}\n",
                   "test.yaml:2:33: bvh.quality: the nodes of bvh.builder: octree stay where space is divided; expected "
                   "fast, or bvh.builder: sah or spatial; found high"},
