@@ -94,10 +94,11 @@ class Tester {
     passes_[UnitKind::kTransform] += passes;
     return banks_[UnitKind::kTransform].reserve(at, passes).last;
   }
-  /// The time at which so many compressed blocks have been decoded. The units take them whole, not in lanes.
+  /// The time at which so many compressed blocks have been decoded. The units take them whole, not in lanes,
+  /// and blocks of several visits side by side.
   Cycle decode(Cycle at, std::uint64_t blocks) {
     passes_[UnitKind::kDecoder] += blocks;
-    return blocks == 0 ? at : banks_[UnitKind::kDecoder].reserve(at, blocks).last;
+    return blocks == 0 ? at : banks_[UnitKind::kDecoder].reserve_beside(at, blocks).last;
   }
   /// The time at which `records` records that are wanted at `at` have been read, beside others.
   Cycle read(Cycle at, std::uint64_t records) { return reads_cost_ ? store_.reserve_beside(at, records).last : at; }
