@@ -1,31 +1,18 @@
 """Executes every command of docs/guides/draw-a-machine.md in turn, in a folder of its own. CAROUSEL names the
 program."""
 
-import os
-import re
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+from page_commands import commands, reader, text_of
 
 
 class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
-        page = (SOURCE / "docs" / "guides" / "draw-a-machine.md").read_text()
-        blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 13)
-        printed = []
-        with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "bin").mkdir()
-            (Path(folder) / "bin" / "carousel").symlink_to(os.environ["CAROUSEL"])
-            environment = {**os.environ, "PATH": f"{folder}/bin:{os.environ['PATH']}"}
-            for text in blocks:
-                done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment,
-                                      capture_output=True, text=True, check=False)
-                self.assertEqual(done.returncode, 0, text + done.stdout + done.stderr)
-                printed.append(done.stdout)
+        page = text_of("guides/draw-a-machine.md")
+        texts = commands("guides/draw-a-machine.md")
+        self.assertEqual(len(texts), 13)
+        with reader() as user:
+            printed = user.all(texts)
         # The drawing on the page is what the program prints.
         self.assertIn(f"```\n{printed[0]}```", page)
         self.assertRegex(printed[1], "hits +the same")

@@ -1,13 +1,10 @@
 """Runs the commands of docs/studies/floor-plans.md, with small pictures, on configs/floorplans. CAROUSEL names the program."""
 
-import os
 import re
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+from page_commands import SOURCE, commands, reader
+
 PLANS = ("gpu_two_partitions", "mesh_of_tiles", "package_of_four")
 
 
@@ -22,18 +19,11 @@ class FloorPlans(unittest.TestCase):
             self.assertRegex(comment, r"After the (block diagram|basic design) of .*figure \d")
 
     def test_commands_of_the_page(self):
-        page = (SOURCE / "docs/studies/floor-plans.md").read_text()
-        check, run = re.findall(r"```sh\n(.*?)```", page, re.S)
+        check, run = commands("studies/floor-plans.md")
         small = "--quiet --set image.width=32 --set image.height=20"
         self.assertEqual(run.count("--quiet"), 1)
-        with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "bin").mkdir()
-            (Path(folder) / "bin/carousel").symlink_to(os.environ["CAROUSEL"])
-            (Path(folder) / "configs").symlink_to(SOURCE / "configs")
-            environment = {**os.environ, "PATH": f"{folder}/bin:{os.environ['PATH']}"}
-            printed = [subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment, check=True,
-                                      capture_output=True, text=True).stdout
-                       for text in (check, run.replace("--quiet", small))]
+        with reader() as user:
+            printed = user.all((check, run.replace("--quiet", small)))
         # By hand: half of the pairs of clusters lie on both sides of the crossbar's link of 128 bytes; a cut through the
         # mesh has six links of 64, and one through the ring of modules two of 48. Each counts there and back.
         self.assertIn("# graph: 16 resources, 12 routers, 50 links of one way", printed[0])

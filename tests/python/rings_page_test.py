@@ -1,33 +1,19 @@
 """Executes every command of docs/studies/rings.md in turn, in a folder of its own. CAROUSEL names the program."""
 
 import json
-import os
-import re
-import subprocess
-import tempfile
 import unittest
-from pathlib import Path
 
-SOURCE = Path(__file__).resolve().parents[2]
+from page_commands import commands, reader, text_of
 
 
 class RingsPage(unittest.TestCase):
     def test_every_block_works(self):
-        page = (SOURCE / "docs" / "studies" / "rings.md").read_text()
-        blocks = re.findall(r"```sh\n(.*?)```", page, re.S)
-        self.assertEqual(len(blocks), 5)
-        printed = []
-        with tempfile.TemporaryDirectory() as folder:
-            (Path(folder) / "bin").mkdir()
-            (Path(folder) / "bin" / "carousel").symlink_to(os.environ["CAROUSEL"])
-            (Path(folder) / "configs").symlink_to(SOURCE / "configs")
-            environment = {**os.environ, "PATH": f"{folder}/bin:{os.environ['PATH']}"}
-            for text in blocks:
-                done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=folder, env=environment,
-                                      capture_output=True, text=True, check=False)
-                self.assertEqual(done.returncode, 0, text + done.stdout + done.stderr)
-                printed.append(done.stdout)
-            traffic = {name: json.loads((Path(folder) / name / "report.json").read_text())["traffic"]
+        page = text_of("studies/rings.md")
+        texts = commands("studies/rings.md")
+        self.assertEqual(len(texts), 5)
+        with reader() as user:
+            printed = user.all(texts)
+            traffic = {name: json.loads((user.folder / name / "report.json").read_text())["traffic"]
                        for name in ("eib", "free", "bridge", "far")}
         self.assertIn("may wait for as long as others keep its way full", printed[0])
         # The table of the page.
