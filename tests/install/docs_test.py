@@ -29,7 +29,7 @@ class Check(unittest.TestCase):
             root = Path(folder)
             shutil.copytree(SOURCE / "web/docs", root / "web/docs", ignore=shutil.ignore_patterns("__pycache__"))
             (root / "web/docs/mkdocs.yml").write_text(nav)
-            (root / "docs").mkdir()
+            (root / "docs/guides").mkdir(parents=True)
             files = {**PAGES, **{name.replace("__", "/").replace("_md", ".md"): text for name, text in changed.items()}}
             for name, text in files.items():
                 (root / name).write_text(text)
@@ -59,6 +59,14 @@ class Check(unittest.TestCase):
     def test_a_page_outside_the_list_and_one_that_is_gone(self):
         self.assertIn("nav lacks glossary.md", self.faults(nav="nav:\n  - index.md\n"))
         self.assertIn(f"there is no {GONE}gone.md", self.faults(nav=NAV + "  - gone.md\n"))
+
+    def test_a_guide_that_is_too_long(self):
+        page = "docs__guides__long_md"
+        nav = NAV + "  - guides/long.md\n"
+        table = "| a cell | of five words |\n" * 400
+        self.assertEqual(self.faults(nav=nav, **{page: f"# Long\n\n{'word ' * 1198}\n\n{table}\n```sh\n{'word ' * 400}\n```\n"}), "")
+        self.assertIn(f"{GONE}guides/long.md: a guide has fewer than 1200 words of prose, not 1200",
+                      self.faults(nav=nav, **{page: f"# Long\n\n{'word ' * 1199}\n"}))
 
     def test_a_list_without_an_empty_line_before_it(self):
         self.assertIn("a list needs an empty line", self.faults(docs__index_md=PAGES["docs/index.md"] + "Text:\n- a\n"))
