@@ -113,10 +113,8 @@ void set_query(Prepared& p) {
   const QueryConfig& query = p.config().rays.query;
   const bool all = query.hits == Query::kAll, several = query.nearest > 0,
              list = p.config().workload.kind == WorkloadConfig::Kind::kRaysFrom;
-  p.all_hits.reset();
-  if (all || (several && list))
-    p.all_hits =
-        std::make_unique<AllHits>(static_cast<std::size_t>(all ? p.config().rays.hits_per_ray : query.nearest));
+  const auto kept = static_cast<std::size_t>(all ? p.config().rays.hits_per_ray : query.nearest);
+  p.all_hits = all || (several && list) ? std::make_unique<AllHits>(kept) : nullptr;
   p.nearest_hits = several ? std::make_unique<NearestHits>(p.all_hits.get()) : nullptr;
   p.accel.all_hits = all ? p.all_hits.get() : nullptr;
   p.accel.nearest_hits = p.nearest_hits.get();
@@ -149,26 +147,19 @@ accel::StructureSize whole_structure(const accel::StructureSize& share, ringbus:
   for (const std::string& bytes : ranks.gather({reinterpret_cast<const char*>(&share), sizeof share})) {
     accel::StructureSize other;
     std::memcpy(&other, bytes.data(), sizeof other);
-    sum.primitives += other.primitives;
-    sum.references += other.references;
-    sum.inner_nodes += other.inner_nodes;
-    sum.leaves += other.leaves;
-    sum.surface_cost += other.surface_cost;
+    sum += other;
   }
   return sum;
 }
 
-void make_micromaps(Prepared& p) {
-  const BvhConfig::Micromaps& c = p.config().bvh.micromaps;
-  if (c.states == BvhConfig::Micromaps::States::kNone) return;
+void make_micromaps(Prepared& p, const BvhConfig::Micromaps& c) {
   Phase phase("micromaps");
   if (p.micromaps == nullptr)  // they are of textures, and stay when triangles move
     p.micromaps = std::make_unique<scene::OpacityMicromaps>(
         shading::make_micromaps(p.scene, static_cast<int>(c.level), c.states == BvhConfig::Micromaps::States::kFour));
-  p.accel.micromaps = p.micromaps.get();
-  p.accel.micromap_places = accel::place_micromaps(p.accel, *p.micromaps);
-  phase.result(
-      fmt::format("{} triangles with a map, {}", p.micromaps->maps(), report::bytes_text(p.micromaps->size_bytes())));
+  accel::set_micromaps(p.accel, *p.micromaps);
+  const std::string bytes = report::bytes_text(p.micromaps->size_bytes());
+  phase.result(fmt::format("{} triangles with a map, {}", p.micromaps->maps(), bytes));
 }
 
 void build_accel(Prepared& p, ringbus::Transport* transport) {
@@ -323,14 +314,10 @@ void rebuild(Prepared& p) {
 }
 
 void renew_any_hit(Prepared& p) {
-  p.alpha_test.reset();
-  if (p.accel.has_non_opaque) p.alpha_test = std::make_unique<shading::AlphaTest>(p.scene);
+  p.alpha_test = p.accel.has_non_opaque ? std::make_unique<shading::AlphaTest>(p.scene) : nullptr;
   p.accel.any_hit = p.alpha_test.get();
-  if (p.accel.has_non_opaque) make_micromaps(p);
-}
-
-scene::View view_of(const Config& config) {
-  return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};
+  const BvhConfig::Micromaps& maps = p.config().bvh.micromaps;
+  if (p.accel.has_non_opaque && maps.states != BvhConfig::Micromaps::States::kNone) make_micromaps(p, maps);
 }
 
 Config Prepared::absolute_config() const {

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "accel/measure/structure_size.h"
 #include "accel/structure/accel.h"
-#include "accel/structure/structure_size.h"
 #include "app/run/all_hits.h"
 #include "core/config/load/ignored_keys.h"
 #include "core/config/load/load.h"
@@ -81,7 +81,9 @@ void rebuild(Prepared& prepared);
 void renew_any_hit(Prepared& prepared);
 
 /// The view of the configured picture.
-scene::View view_of(const Config& config);
+inline scene::View view_of(const Config& config) {
+  return {config.camera, static_cast<float>(config.image.width) / static_cast<float>(config.image.height)};
+}
 
 /// Path of a file that a configuration names: in the configuration's folder, or else in the working folder.
 std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file);

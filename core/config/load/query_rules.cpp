@@ -1,8 +1,8 @@
-#include "core/config/load/query_rules.h"
-
 #include <string>
 
 #include <fmt/format.h>
+
+#include "core/config/load/feature_rules.h"
 
 namespace carousel::config {
 

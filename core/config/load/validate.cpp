@@ -8,14 +8,11 @@
 #include <glm/geometric.hpp>
 
 #include "core/config/load/bound_rules.h"
-#include "core/config/load/frame_rules.h"
+#include "core/config/load/feature_rules.h"
 #include "core/config/load/memory_rules.h"
 #include "core/config/load/network_rules.h"
 #include "core/config/load/program_rules.h"
-#include "core/config/load/query_rules.h"
 #include "core/config/load/rank_rules.h"
-#include "core/config/load/treelet_rules.h"
-#include "core/config/load/warp_rules.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
 #include "core/text/edit_distance.h"

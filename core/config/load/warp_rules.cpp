@@ -1,9 +1,9 @@
-#include "core/config/load/warp_rules.h"
-
 #include <cstdint>
 #include <string>
 
 #include <fmt/format.h>
+
+#include "core/config/load/feature_rules.h"
 
 namespace carousel::config {
 

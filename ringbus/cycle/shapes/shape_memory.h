@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "accel/builders/quantised_boxes.h"
+#include "accel/measure/structure_depths.h"
 #include "accel/packed/packed_leaves.h"
 #include "accel/structure/accel.h"
 #include "accel/structure/shape_bytes.h"
-#include "accel/structure/structure_depths.h"
 #include "accel/transform/instance_data.h"
 #include "core/config/fields/bvh.h"
 #include "core/config/fields/memory.h"

@@ -14,7 +14,7 @@
 #include "accel/builders/build.h"
 #include "accel/builders/mesh/mesh_pieces.h"
 #include "accel/builders/rank_shares.h"
-#include "accel/structure/structure_size.h"
+#include "accel/measure/structure_size.h"
 #include "accel/traverse/kernels.h"
 #include "core/system/error.h"
 #include "core/system/executor.h"

@@ -1,4 +1,4 @@
-#include "accel/structure/structure_depths.h"
+#include "accel/measure/structure_depths.h"
 
 #include <algorithm>
 #include <array>

@@ -15,6 +15,15 @@ struct StructureSize {
   /// mesh (MacDonald, Booth 1990, "Heuristics for ray tracing using space subdivision"); the mean over meshes, weighted
   /// by their primitives; of a partitioned one by their references.
   double surface_cost = 0;
+
+  StructureSize& operator+=(const StructureSize& share) {
+    primitives += share.primitives;
+    references += share.references;
+    inner_nodes += share.inner_nodes;
+    leaves += share.leaves;
+    surface_cost += share.surface_cost;
+    return *this;
+  }
 };
 
 StructureSize structure_size(const Accel& accel);

@@ -1,4 +1,4 @@
-#include "accel/structure/structure_size.h"
+#include "accel/measure/structure_size.h"
 
 #include <algorithm>
 #include <unordered_set>
