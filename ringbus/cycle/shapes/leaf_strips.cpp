@@ -11,7 +11,7 @@ namespace {
 constexpr std::uint32_t kVertexBytes = 12, kReferenceBytes = 4;
 constexpr std::uint32_t kPrimitiveBytes = sizeof(accel::TriangleBlock) / accel::kBlockTriangles;
 
-std::vector<StripTriangle> triangles_of(const accel::Accel& accel, accel::NodeRef leaf) {
+std::vector<StripTriangle> strip_triangles(const accel::Accel& accel, accel::NodeRef leaf) {
   std::vector<StripTriangle> out;
   for (std::uint32_t i = 0; i < leaf.triangles(); ++i) {
     const accel::TriangleBlock& block = accel.blocks[leaf.first_block() + i / accel::kBlockTriangles];
@@ -39,7 +39,7 @@ void LeafStrips::add(const accel::Accel& accel, accel::NodeRef leaf) {
   std::uint32_t bytes = triangles * kPrimitiveBytes;
   const std::uint32_t separate = bytes;
   if (!leaf.is_procedural()) {
-    const StripCounts counts = triangle_strips(triangles_of(accel, leaf));
+    const StripCounts counts = triangle_strips(strip_triangles(accel, leaf));
     bytes = counts.vertices * kVertexBytes + triangles * kReferenceBytes;
     counts_.triangles += triangles;
     counts_.strips += counts.strips;
