@@ -132,7 +132,7 @@ void describe(V& v, const PowerPeak& r) {
   v.field("watts_at_most", r.watts_at_most, "W",
           "bound for so many cycles that begin anywhere: the most energy of these and one resolution more");
   v.field("part", r.part, "", "part with most of their energy, as in parts");
-  v.field("part_share", r.part_share, "", "its share of their energy");
+  v.field("part_share", r.part_share, "fraction", "its share of their energy");
 }
 
 struct Energy {

@@ -104,7 +104,7 @@ export function wrongCharts(charts, report) {
     if (list?.length) same(id, charts[id].series[0], list.map((c) => c.count));
   if (report.tests?.depth_first)
     same('tests', charts['fig-tests'].series[0].slice(0, 1), [report.tests.box.per_ray]);
-  const curves = Object.entries(charts).filter(([id]) => /^fig-time-\d/.test(id)).map(([, chart]) => chart);
+  const curves = Object.entries(charts).filter(([id]) => /^fig-(time-\d|energy-time)/.test(id)).map(([, chart]) => chart);
   for (const row of report.time_series?.rows.filter((r) => r.part === 'machine') ?? []) {
     const chart = curves.find((c) => c.names.includes(row.quantity));
     if (!chart) wrong.push(`no chart has the curve of ${row.quantity}`);

@@ -68,7 +68,10 @@ class Rules {
     if (c.scene.file.empty() && !c.scene.builtin) {
       if (c.workload.kind == WorkloadConfig::Kind::kTraffic || c.workload.kind == WorkloadConfig::Kind::kMemoryTrace)
         return;  // these meet no scene
-      issue("scene", "expected a scene: file, or builtin (cornell, spheres, terrain, instances, sliver)");
+      std::string names;
+      for (const auto& [scene, name] : kEnumNames<BuiltinScene>)
+        names += fmt::format("{}{}", names.empty() ? "" : ", ", name);
+      issue("scene", fmt::format("expected a scene: file, or builtin ({})", names));
     }
     if (c.scene.procedural && c.scene.builtin != BuiltinScene::kSpheres)
       issue("scene.procedural", "only the built-in spheres are procedural primitives; expected false, found true");

@@ -16,7 +16,7 @@ struct NearestRound {
 
 template <class V>
 void describe(V& v, const NearestRound& r) {
-  v.field("round", r.round, "", "the number of the round; 0 is the first");
+  v.field("round", r.round, "round", "the number of the round; 0 is the first");
   v.field("rays", r.visits.rays, "rays", "rays that had such a round");
   v.field("visits", r.visits.visits, "nodes", "tests of a ray against the shapes of a node or a leaf in it");
 }

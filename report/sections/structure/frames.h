@@ -20,7 +20,7 @@ struct FrameUpdateCost {
 template <class V>
 void describe(V& v, const FrameUpdateCost& r) {
   v.field("cycles", r.cycles, "cycles", "time of the builder, before the first ray of the frame");
-  v.field("levels", r.levels, "", "steps of its work of which each waits for all writes of the one before");
+  v.field("levels", r.levels, "steps", "steps of its work of which each waits for all writes of the one before");
   v.field("boxes", r.boxes, "boxes", "boxes that it added to others, or sorted into bins");
   v.field("bytes_read", r.bytes_read, "bytes", "bytes of lines that it read from the memory");
   v.field("bytes_written", r.bytes_written, "bytes", "bytes of lines that it wrote to the memory");
@@ -49,7 +49,7 @@ struct Frame {
 
 template <class V>
 void describe(V& v, const Frame& r) {
-  v.field("frame", r.frame, "", "number of the frame");
+  v.field("frame", r.frame, "frame", "number of the frame");
   v.field("time", r.time, "s", "moment that it shows; scene.time with this value shows it by itself");
   v.field("update", r.update, "",
           "how the structure came to be that of the frame: built before the run, refit, rebuild, or kept");

@@ -11,9 +11,9 @@ struct OpacityStates {
 
 template <class V>
 void describe(V& v, const OpacityStates& r) {
-  v.field("opaque", r.opaque, "", "those that every ray stops at");
-  v.field("transparent", r.transparent, "", "those that every ray passes");
-  v.field("unknown", r.unknown, "", "those for which the any-hit call decides");
+  v.field("opaque", r.opaque, "count", "those that every ray stops at");
+  v.field("transparent", r.transparent, "count", "those that every ray passes");
+  v.field("unknown", r.unknown, "count", "those for which the any-hit call decides");
 }
 
 /// Opacity micromaps of the triangles that are not opaque.
@@ -37,7 +37,7 @@ void describe(V& v, const Micromaps& r) {
   v.field("calls_saved", r.calls_saved, "calls", "lookups that found opaque or transparent");
   v.field("calls", r.calls, "calls",
           "any-hit calls that were made all the same: of unknown states, of spheres, and of rays that report all hits");
-  v.field("saved_share", r.saved_share, "", "share of the saved calls in these and the saved ones");
+  v.field("saved_share", r.saved_share, "fraction", "share of the saved calls in these and the saved ones");
 }
 
 }  // namespace carousel::report

@@ -2,9 +2,12 @@
 // every level of accuracy, over bundles and triangles made to be hard.
 #include "accel/box/bundle_primitives.h"
 
+#include <bit>
+
 #include <gtest/gtest.h>
 
 #include "accel/traverse/kernels.h"
+#include "scene/model/scene.h"
 #include "tests/accel/box/bundle_cases.h"
 #include "tests/accel/exact/adversarial_cases.h"
 #include "tests/accel/traverse/levels.h"
@@ -38,7 +41,10 @@ TriangleBlock spheres_in(const BundleCase& c, Random& random) {
   for (std::uint32_t lane = 0; lane < BundleCase::kBoxes; ++lane) {
     const Aabb box = child_box(c.node, static_cast<int>(lane));
     for (int axis = 0; axis < 3; ++axis) block.vertex[0][axis][lane] = random.uniform(box.lo[axis], box.hi[axis]);
-    block.vertex[1][0][lane] = std::max(std::numeric_limits<float>::min(), random.uniform() * (box.hi[0] - box.lo[0]));
+    const float radius = std::max(std::numeric_limits<float>::min(), random.uniform() * (box.hi[0] - box.lo[0]));
+    block.vertex[1][0][lane] = radius;
+    block.vertex[1][1][lane] = std::bit_cast<float>(scene::kNoProgram);
+    for (int axis = 0; axis < 3; ++axis) block.vertex[2][axis][lane] = radius;
     block.primitive[lane] = lane;
   }
   return block;

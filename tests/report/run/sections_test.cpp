@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr RunFeatures kAllFeatures{true, true, true, true, true, true, true};
+constexpr RunFeatures kAllFeatures{true, true, true, true, true, true, true, true, true, true};
 
 std::vector<std::string> keys(const Json& json) {
   std::vector<std::string> out;

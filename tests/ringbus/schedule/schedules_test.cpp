@@ -174,7 +174,7 @@ TEST(Schedules, ChangeNoHitAndLoseNothing) {
 #endif
   Trials trials;
   Cell cell;
-  const std::uint32_t first = first_schedule(), count = static_cast<std::uint32_t>(scaled(3000, 400));
+  const std::uint32_t first = first_schedule(), count = static_cast<std::uint32_t>(scaled(3000, 1500));
   for (std::uint32_t i = first; i < first + count; ++i) {
     if (i == first || i % kSchedulesAMachine == 0) cell = machine_of(i);
     ASSERT_EQ(trials.run(cell, schedule_seed(i)), "") << cell.text() << '\n'
