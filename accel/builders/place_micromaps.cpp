@@ -51,11 +51,11 @@ class MicromapWalk {
 
 }  // namespace
 
-MicromapPlaces place_micromaps(const Accel& accel, const scene::OpacityMicromaps& maps) {
+void set_micromaps(Accel& accel, const scene::OpacityMicromaps& maps) {
   MicromapWalk walk(accel, maps);
   for (std::uint32_t i = 0; i < maps.mesh_of.size(); ++i)
     if (!accel.merged.holds(i) || i == accel.merged.instance()) walk.below(i);
-  return walk.places();
+  accel.micromaps = {&maps, walk.places()};
 }
 
 }  // namespace carousel::accel

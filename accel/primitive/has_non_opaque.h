@@ -35,10 +35,10 @@ inline constexpr bool kChecksMicromaps = false;
 /// std::logic_error if the any-hit call would say something else.
 template <class Slab>
 [[gnu::noinline]] bool triangle_is_solid(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found) {
-  if (accel.micromaps == nullptr || accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0)
+  if (accel.micromaps.maps == nullptr || accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0)
     return any_hit_accepts(accel, ray, found);
   ++ray.counts->micromap_lookups;
-  const scene::OpacityState state = accel.micromaps->state(found.instance, found.primitive, found.u, found.v);
+  const scene::OpacityState state = accel.micromaps.maps->state(found.instance, found.primitive, found.u, found.v);
   if (state == scene::OpacityState::kUnknown) return any_hit_accepts(accel, ray, found);
   ++ray.counts->micromap_known;
   const bool solid = state == scene::OpacityState::kOpaque;

@@ -21,7 +21,6 @@
 #include "core/types/any_hit.h"
 #include "core/types/hit_sink.h"
 #include "core/types/nearest_sink.h"
-#include "scene/model/opacity_micromaps.h"
 
 namespace carousel::accel {
 
@@ -63,9 +62,8 @@ struct Accel {
   std::shared_ptr<const TreePieces> pieces;    ///< null: the tree is not cut (`bvh.treelets`)
   std::shared_ptr<const PackedLeaves> packed;  ///< null: leaves are not compressed (`bvh.leaves: blocks`)
   const AnyHit* any_hit = nullptr;  ///< answers any-hit calls, set before tracing; null: every surface is opaque
-  const scene::OpacityMicromaps* micromaps = nullptr;  ///< asked before `any_hit`, set with it; may be null
-  MicromapPlaces micromap_places;                      ///< bytes of the micromaps, by block; empty without
-  HitSink* all_hits = nullptr;  ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
+  PlacedMicromaps micromaps;        ///< asked before `any_hit`, set with it
+  HitSink* all_hits = nullptr;      ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   NearestSink* nearest_hits = nullptr;  ///< takes the hits of rays that look for several, set before tracing; or null
   std::vector<RayProgram> programs;     ///< of primitives; kept by no rank apart, as a unit holds them all
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it

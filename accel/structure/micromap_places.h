@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "accel/structure/node.h"
+#include "scene/model/opacity_micromaps.h"
 
 namespace carousel::accel {
 
@@ -18,11 +19,11 @@ class MicromapPlaces {
     for (const std::uint32_t own : bytes) before_.push_back(before_.back() + own);
   }
 
-  /// Those behind all primitives before a place of a block.
+  /// The bytes behind all primitives that stand before a place of a block.
   std::uint64_t before(std::uint32_t block, std::uint32_t lane = 0) const {
     return before_.empty() ? 0 : before_[std::size_t{block} * kBlockTriangles + lane];
   }
-  /// Those behind the primitives of a leaf.
+  /// The bytes behind the primitives of a leaf.
   std::uint32_t of(NodeRef leaf) const {
     if (before_.empty()) return 0;
     return static_cast<std::uint32_t>(before(leaf.first_block() + leaf.blocks()) - before(leaf.first_block()));
@@ -31,6 +32,12 @@ class MicromapPlaces {
 
  private:
   std::vector<std::uint64_t> before_;
+};
+
+/// Opacity micromaps and their bytes with the primitives of a structure.
+struct PlacedMicromaps {
+  const scene::OpacityMicromaps* maps = nullptr;  ///< null: there are none
+  MicromapPlaces places;                          ///< empty without
 };
 
 }  // namespace carousel::accel

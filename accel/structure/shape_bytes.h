@@ -32,7 +32,7 @@ inline std::uint32_t bytes_behind(const Accel& accel, const Node& node) {
   for (int lane = 0; lane < node.count; ++lane)
     if (node.direct >> lane & 1) {
       const NodeRef leaf = accel.held_leaf(node, lane);
-      bytes += leaf.blocks() * sizeof(TriangleBlock) + accel.micromap_places.of(leaf);
+      bytes += leaf.blocks() * sizeof(TriangleBlock) + accel.micromaps.places.of(leaf);
     }
   return static_cast<std::uint32_t>(bytes);
 }

@@ -76,7 +76,7 @@ class ShapeMemory {
     if (most_leaf_ == 0) return span;
     if (!key.ref.is_inner()) {
       if (!strips_.holds(key.ref) && !quantised_)
-        span.bytes = key.ref.triangles() * kPrimitiveBytes + accel_.micromap_places.of(key.ref);
+        span.bytes = key.ref.triangles() * kPrimitiveBytes + accel_.micromaps.places.of(key.ref);
       span.most = most_leaf_;
     } else if (most_node_ > 0) {
       if (span.bytes == node_bytes_) span.bytes = accel_.nodes[key.ref.node()].count * (node_bytes_ / accel::kMaxWidth);
@@ -96,8 +96,8 @@ class ShapeMemory {
     if (!key.ref.is_inner()) {
       const std::uint32_t block = key.ref.first_block(), at = static_cast<std::uint32_t>(lane);
       const auto maps = [&](std::uint32_t place) {
-        return static_cast<std::uint32_t>(accel_.micromap_places.before(block, place) -
-                                          accel_.micromap_places.before(block));
+        return static_cast<std::uint32_t>(accel_.micromaps.places.before(block, place) -
+                                          accel_.micromaps.places.before(block));
       };
       return {whole.address + std::uint64_t{at} * kPrimitiveBytes + maps(at),
               kPrimitiveBytes + maps(at + 1) - maps(at)};
@@ -166,8 +166,8 @@ class ShapeMemory {
       return {blocks_at_ + place.begin, place.bytes};
     }
     if (strips_.holds(key.ref)) return {blocks_at_ + strips_.begin(key.ref), strips_.bytes(key.ref)};
-    const std::uint64_t begin = blocks_at_ + accel_.micromap_places.before(key.ref.first_block());
-    const std::uint32_t maps = accel_.micromap_places.of(key.ref);
+    const std::uint64_t begin = blocks_at_ + accel_.micromaps.places.before(key.ref.first_block());
+    const std::uint32_t maps = accel_.micromaps.places.of(key.ref);
     if (quantised_)
       return {begin + std::uint64_t{primitives_before_[key.ref.first_block()]} * kQuantisedLeafBytes,
               key.ref.triangles() * kQuantisedLeafBytes + maps};
@@ -208,7 +208,7 @@ class ShapeMemory {
   std::uint64_t bytes_of_leaves() {
     if (accel_.packed) return accel_.packed->bytes();
     if (strips_.bytes() > 0) return strips_.bytes();
-    const std::uint64_t maps = accel_.micromap_places.all();
+    const std::uint64_t maps = accel_.micromaps.places.all();
     if (!quantised_) return accel_.blocks.size() * sizeof(accel::TriangleBlock) + maps;
     std::uint32_t primitives = 0;
     primitives_before_.reserve(accel_.blocks.size());
@@ -239,7 +239,7 @@ class ShapeMemory {
     if (node.direct >> lane & 1) {
       const accel::NodeRef leaf = accel_.held_leaf(node, lane);
       bytes +=
-          leaf.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock)) + accel_.micromap_places.of(leaf);
+          leaf.blocks() * static_cast<std::uint32_t>(sizeof(accel::TriangleBlock)) + accel_.micromaps.places.of(leaf);
     }
     return bytes;
   }
