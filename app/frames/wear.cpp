@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "accel/builders/build.h"
+#include "accel/builders/place_micromaps.h"
 #include "accel/builders/refit.h"
 #include "accel/traverse/reference_tracer.h"
 #include "app/run/render_job.h"
@@ -27,6 +28,7 @@ std::uint64_t depth_first_tests(const Prepared& p, const accel::Accel& accel) {
 accel::Accel rebuild_beside(const Prepared& p, report::Frame& row) {
   accel::Accel rebuilt = accel::build(p.scene, p.config().bvh, *make_executor(p.threads), p.config().accuracy);
   rebuilt.any_hit = p.accel.any_hit;
+  if (p.micromaps) accel::set_micromaps(rebuilt, *p.micromaps);
   row.surface_cost_rebuilt = accel::surface_cost(rebuilt);
   row.depth_first_tests = depth_first_tests(p, p.accel);
   row.depth_first_tests_rebuilt = depth_first_tests(p, rebuilt);
