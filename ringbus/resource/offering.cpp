@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <stdexcept>
 #include <utility>
 
 namespace carousel::ringbus {
@@ -65,8 +66,9 @@ void Offering::group_up() {
     if (block_.rays.size() + rays > group_rays_ || homes_.of(group.key) != rays_.owner()) return;
     const std::uint32_t needed = block_.needed + traversal_.blocks_needed(group.key, rays);
     if (!storage_.fits(needed, collections_.front_blocks(*next))) return;
-    collections_.take(*next, more_);
+    collections_.take(*next, more_, &more_joined_);
     block_.rays.insert(block_.rays.end(), more_.begin(), more_.end());
+    block_.joined.insert(block_.joined.end(), more_joined_.begin(), more_joined_.end());
     block_.groups.push_back(group);
     block_.needed = needed;
   }
@@ -86,6 +88,8 @@ void Offering::fill(Packet& packet) {
   if (packet.kind == PacketKind::kMemberships) packet.nearest[0] = block_.entry;
   packet.answered = packet.named = 0;
   packet.takes_reserve = !storage_.fits(packet.reserved_blocks, 0);
+  if (kChecked && block_.joined.size() != rays.size())
+    throw std::logic_error("a packet has rays of which nobody knows when they joined their collection");
   packet.members.resize(rays.size());
   for (std::size_t i = 0; i < rays.size(); ++i) packet.members[i] = {rays[i], 0, false, block_.joined[i]};
   traversal_.prepare(packet);

@@ -89,7 +89,8 @@ class Offering {
   bool local_;
   EventSink* events_;
   std::size_t group_rays_;
-  std::vector<RayId> more_;  // scratch
+  std::vector<RayId> more_;                 // scratch
+  std::vector<std::uint32_t> more_joined_;  // scratch
   Block block_;
   std::uint32_t in_flight_ = 0;
 };
