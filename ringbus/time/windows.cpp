@@ -191,9 +191,15 @@ class WindowRun {
 
   /// The end of the part of a window that may be run before the next look.
   Cycle end_of_part(Cycle end) const { return std::min(end, next_look_); }
-  /// Nothing happens before `now` any more.
+  /// Nothing happens before `now` any more. A look that throws ends the run as an agent does: other threads wait at a
+  /// barrier, which this one must not leave them at.
   void look_until(Cycle now) {
-    while (next_look_ <= now) next_look_ = look_(next_look_);
+    try {
+      while (next_look_ <= now) next_look_ = look_(next_look_);
+    } catch (...) {
+      keep_error();
+      next_look_ = kNever;
+    }
   }
 
   /// By agent of a thread: the time at which it is next to run, and whether it must be asked before every window.

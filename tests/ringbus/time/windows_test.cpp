@@ -142,6 +142,25 @@ TEST(Windows, ALookFindsWhatComesBeforeIt) {
       }
 }
 
+TEST(Windows, ALookThatThrowsEndsAllThreads) {
+  for (const std::size_t threads : {1, 2, 3})
+    for (const std::size_t each : {1, 20}) {
+      std::vector<std::unique_ptr<Worker>> agents;
+      std::vector<std::vector<Agent*>> parts(threads);
+      for (std::vector<Agent*>& part : parts)
+        for (std::size_t i = 0; i < each; ++i) part.push_back(agents.emplace_back(std::make_unique<Worker>()).get());
+      WakeupTable wakeups(parts);
+      const auto look = [](Cycle at) -> Cycle {
+        if (at == 351) throw std::runtime_error("the meter is broken");
+        return at + 7;
+      };
+      EXPECT_THROW(run_windows(
+                       parts, wakeups, 5, [](Cycle) { return true; }, look, 1),
+                   std::runtime_error);
+      for (const auto& agent : agents) EXPECT_LT(agent->last(), 356u) << "no further window begins";
+    }
+}
+
 /// Sends to another; runs only when it is told.
 class Listener final : public Agent {
  public:
