@@ -11,6 +11,8 @@ namespace carousel::app {
 
 namespace {
 
+constexpr std::size_t kSlots = PowerMeter::kWindow / PowerMeter::kResolution;  // in a window
+
 /// The names of the parts, as in energy.parts.
 std::vector<std::string> part_names() {
   std::vector<std::string> out;
@@ -34,7 +36,7 @@ Joules difference(const Joules& later, const Joules& earlier) {
 
 void PowerMeter::begin(const std::vector<ByteRow>& rows, std::size_t most_samples) {
   account_.emplace(config_, link_mm_, rows);
-  most_ = most_samples;
+  most_ = 2 * most_samples;
   if (most_ == 0) next_sample_ = std::numeric_limits<std::uint64_t>::max();
 }
 
@@ -64,7 +66,6 @@ void PowerMeter::halve() {
 
 /// Windows of kWindow cycles end with each slot, and any other one lies within a window and the slot before it.
 void PowerMeter::end_slot(const Joules& now) {
-  constexpr std::size_t kSlots = kWindow / kResolution;
   slots_.push_back(now);
   if (slots_.size() > kSlots + 2) slots_.pop_front();
   if (slots_.size() > kSlots) {
@@ -75,8 +76,12 @@ void PowerMeter::end_slot(const Joules& now) {
   next_slot_ += kResolution;
 }
 
-void PowerMeter::close(std::uint64_t, const ringbus::EnergyEvents& events) {
+/// The last slot is read as if it ended with the run, so that no window of the run is left out.
+void PowerMeter::close(std::uint64_t cycles, const ringbus::EnergyEvents& events) {
   last_ = joules(events);
+  while (next_slot_ <= cycles) end_slot(last_);
+  if (slots_.size() > kSlots)
+    most_around_ = std::max(most_around_, sum(difference(last_, slots_[slots_.size() - 1 - kSlots])));
 }
 
 void PowerMeter::add_rows(ringbus::TimeSeries& series) const {

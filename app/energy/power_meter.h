@@ -44,7 +44,8 @@ class PowerMeter final : public ringbus::EnergyMeter {
   double link_mm_;
   std::int64_t clock_mhz_;
   std::optional<EnergyAccount> account_;
-  // Readings at multiples of a sample's length, of which every other one is dropped when there are too many.
+  // Readings at multiples of a sample's length, of which every other one is dropped when there are too many: twice as
+  // many as the series has, since a look in the last window may come after the last cycle of the run.
   std::size_t most_ = 0;
   std::uint64_t interval_ = 1, next_sample_ = 1, next_slot_ = kResolution;
   std::vector<Joules> readings_;
