@@ -13,6 +13,17 @@ std::uint64_t share(std::uint64_t passes, std::size_t rays, std::size_t i) {
   return passes / rays + (i < passes % rays ? 1 : 0);
 }
 
+/// As share(), of the passes through units of a kind. A program is run by one tester from its beginning to its end, and
+/// takes the mean time of all in the packet.
+std::uint64_t share_of_passes(UnitKind kind, const IntersectionCounts& counts, std::size_t rays, std::size_t i) {
+  if (kind != UnitKind::kProcedural || counts.programs == 0) return share(passes_of(kind, counts), rays, i);
+  const auto cycles_before = [&](std::size_t ray) {
+    const std::uint64_t programs = counts.programs / rays * ray + std::min<std::uint64_t>(ray, counts.programs % rays);
+    return counts.program_cycles * programs / counts.programs;
+  };
+  return share(counts.procedural - counts.programs, rays, i) + cycles_before(i + 1) - cycles_before(i);
+}
+
 }  // namespace
 
 Distributor::Distributor(const TestersConfig& testers, const RayStages& stages, const LinkConfig& link)
@@ -75,7 +86,7 @@ void Distributor::test(Cycle at, std::span<const std::uint32_t> slots, const Int
     tester.queue.take(start + latency_);
 
     PerUnit<std::uint64_t> starts{};
-    for (const UnitKindRow& row : kUnitKinds) starts[row.kind] = share(passes_of(row.kind, counts), slots.size(), i);
+    for (const UnitKindRow& row : kUnitKinds) starts[row.kind] = share_of_passes(row.kind, counts, slots.size(), i);
     Cycle from = start;
     if (const std::uint64_t inversion = i == 0 ? inversion_passes(counts) : 0; inversion > 0)
       from = tester.units[UnitKind::kTransform].reserve(start, inversion).last;

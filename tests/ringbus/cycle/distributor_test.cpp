@@ -160,6 +160,20 @@ class PlayedDistributor {
   Cycle bus_until_ = 0;
 };
 
+TEST(Distributor, DividesNoProgramAmongTesters) {
+  const std::vector<std::uint32_t> slots{0, 1, 2, 3};
+  const auto decided = [&](std::uint64_t programs, std::uint64_t cycles) {
+    IntersectionCounts counts;
+    counts.procedural = 1;
+    counts.programs = programs;
+    counts.program_cycles = cycles;
+    std::vector<Cycle> out;
+    Distributor(TestersConfig{}, RayStages{}, LinkConfig{}).test(10, slots, counts, 64, out);
+    return out;
+  };
+  EXPECT_EQ(decided(1, 100).front(), decided(0, 0).front() + 99);
+}
+
 TEST(Distributor, AgreesWithAMachinePlayedCycleByCycle) {
   std::mt19937 random(7);
   const auto upto = [&](std::uint32_t most) { return static_cast<std::int64_t>(random() % most); };
