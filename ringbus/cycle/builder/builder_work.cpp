@@ -30,6 +30,7 @@ class Sources {
     matrices_ = behind(positions_, primitives * kPositionBytes);
     records_ = behind(matrices_, accel.instances.size() * kMatrixBytes);
     top_records_ = records_ + primitives * kRecordBytes;
+    micromaps_ = behind(top_records_, accel.instances.size() * kRecordBytes);
   }
 
   /// Number of the first primitive of the mesh below a root among all of them.
@@ -44,9 +45,14 @@ class Sources {
     return {(top ? top_records_ : records_) + first * kRecordBytes, static_cast<std::uint32_t>(count * kRecordBytes)};
   }
 
+  /// Of the triangles of a leaf; no bytes if they have none.
+  ShapeSpan micromaps(const accel::Accel& accel, NodeRef leaf) const {
+    return {micromaps_ + accel.micromap_places.before(leaf.first_block()), accel.micromap_places.of(leaf)};
+  }
+
  private:
   std::unordered_map<std::uint32_t, std::uint64_t> first_;
-  std::uint64_t positions_, matrices_, records_, top_records_;
+  std::uint64_t positions_, matrices_, records_, top_records_, micromaps_;
 };
 
 class Planner {
@@ -207,8 +213,10 @@ class Planner {
   void add_subtree(NodeRef ref, BuilderTask& task) const {
     if (ref.is_instance()) return;
     task.writes.push_back(span(ref));
-    if (!ref.is_inner())
+    if (!ref.is_inner()) {
+      if (const ShapeSpan maps = sources_.micromaps(accel_, ref); maps.bytes > 0) task.reads.push_back(maps);
       return each_primitive(ref, [&](std::uint32_t p) { task.reads.push_back(sources_.positions(first_ + p)); });
+    }
     const accel::Node& node = accel_.nodes[ref.node()];
     for (int lane = 0; lane < node.count; ++lane) add_subtree(node.child[lane], task);
   }

@@ -39,8 +39,8 @@ BuilderWork refit_work(const accel::Accel& accel, const ShapeMemory& memory, con
 /// of SAH-based bounding volume hierarchies, 2007), whose outcome is the structure that `bvh` asks for. A primitive's
 /// record of 32 bytes (box and number) is written once. Each halving of a node reads the records below it twice, for
 /// the bins and to part them, and writes them once; a node of n children takes log2 n halvings, rounded up. A subtree
-/// of at most `local_primitives` reads its records once, and the positions of its primitives, and is written as a
-/// whole.
+/// of at most `local_primitives` reads its records once, and the positions and opacity micromaps of its primitives, and
+/// is written as a whole.
 BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
                          std::uint64_t local_primitives);
 

@@ -52,7 +52,7 @@ class Dram {
   /// Cycles of the engine for which the data wires of all channels were busy, the last one rounded up.
   Cycle busy() const;
   double peak_bytes_per_cycle() const;
-  /// Of rows, of all channels so far.
+  /// How many rows all channels have activated so far.
   std::uint64_t activations() const;
   /// The DRAM cycle in which the last transaction took a place.
   DramCycle last_taken() const;
