@@ -36,7 +36,7 @@ class EnergyAccount {
   double rays_kib_, collections_kib_, buffer_kib_, l1_kib_, l2_kib_;
 };
 
-/// Those of a whole run, by its report.
+/// What its report says of the events of a whole run.
 ringbus::EnergyEvents energy_events(const report::Report& r);
 
 /// The sum of all parts.

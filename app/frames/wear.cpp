@@ -16,7 +16,7 @@ namespace carousel::app {
 
 namespace {
 
-/// Of all rays of the frame, each traced by itself.
+/// The tests of all rays of the frame, each traced by itself in `accel`.
 std::uint64_t depth_first_tests(const Prepared& p, const accel::Accel& accel) {
   const RenderJob job(p);
   const IntersectionCounts tests = accel::run_reference(accel, job.workload()).tests;
