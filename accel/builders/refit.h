@@ -11,7 +11,7 @@
 
 namespace carousel::accel {
 
-/// What differs between a scene at two moments.
+/// The parts that differ between a scene at two moments.
 struct SceneChange {
   std::vector<std::uint32_t> meshes;     ///< those with another vertex or sphere
   std::vector<std::uint32_t> instances;  ///< those that stand elsewhere

@@ -30,7 +30,7 @@ struct WaitingNode {
   std::uint16_t depth = 0;
 };
 
-/// What the rays of one store share.
+/// All rays of one store share this.
 struct NearestShared {
   NodeKey root;
   std::uint32_t nearest = 0, buffered = 0;  ///< of QueryConfig

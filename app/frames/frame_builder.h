@@ -11,7 +11,7 @@
 
 namespace carousel::app {
 
-/// What the builder of a simulated machine did for a frame.
+/// This is what the builder of a simulated machine did for a frame.
 struct BuilderFrame {
   report::FrameUpdateCost cost;
   bool complete = true;

@@ -15,7 +15,7 @@ struct ReportedHit {
   Vec3 normal;
 };
 
-/// What a run of a program came to.
+/// A run of a program came to this.
 struct ProgramRun {
   std::array<ReportedHit, kMostProgramHits> hit;
   std::size_t hits = 0;

@@ -28,7 +28,7 @@ inline constexpr auto kEnumNames<Query> = [] {
   return names<Query>({{kClosest, "closest"}, {kAny, "any"}, {kAll, "all"}});
 }();
 
-/// What the rays look for, and how those that look for several hits find them.
+/// These keys say what the rays look for, and how those that look for several hits find them.
 struct QueryConfig {
   Query hits = Query::kClosest;
   std::int64_t nearest = 0;            ///< 0: the closest alone

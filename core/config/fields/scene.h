@@ -182,13 +182,13 @@ void describe(V& v, SceneConfig& c) {
   v.field("procedural", c.procedural, "",
           "The built-in spheres are procedural primitives, as many as there would be triangles.");
   v.field("triangles", c.triangles, IntRange{1, 100'000'000}, "triangles",
-          "The approximate number of triangles of the built-in spheres, terrain and sliver.");
+          "The approximate number of triangles of the built-in spheres, terrain, sliver and foliage.");
   v.field("instances", c.instances, IntRange{1, 10'000'000}, "instances",
           "The number of instances of the built-in scene of instances.");
   v.field("levels", c.levels, IntRange{2, 8}, "levels",
           "With more than 2 the built-in scene of instances consists of groups, within groups down to this depth, each "
           "of them placed many times.");
-  v.field("seed", c.seed, kSeed, "", "The seed of the built-in spheres, terrain, instances and sliver.");
+  v.field("seed", c.seed, kSeed, "", "The seed of the built-in spheres, terrain, instances, sliver and foliage.");
   v.field("camera", c.camera, IntRange{0, 65535}, "", "The index of the camera among those of the scene.");
   v.field_or_auto("time", c.time, kMoment, "seconds",
                   "The moment at which a file is shown that has animations, skins or morph targets. All animations "

@@ -8,7 +8,7 @@ namespace carousel::config {
 
 namespace {
 
-/// What machines whose rays look for several hits cannot do yet.
+/// Refuses what machines whose rays look for several hits cannot do yet.
 void check_machine(const Config& c, const RuleBreach& breach) {
   const auto no = [&](bool wrong, const char* key, const std::string& message) {
     if (wrong) breach(key, message + ", or rays.query.nearest: 0");

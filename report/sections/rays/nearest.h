@@ -21,7 +21,7 @@ void describe(V& v, const NearestRound& r) {
   v.field("visits", r.visits.visits, "nodes", "tests of a ray against the shapes of a node or a leaf in it");
 }
 
-/// What rays that look for several nearest hits have found, and its cost.
+/// The section says what rays that look for several nearest hits have found, and its cost.
 struct Nearest {
   std::uint64_t nearest = 0, buffer = 0, visits = 0, buffer_bytes = 0;
   NearestCounts counts;

@@ -8,7 +8,7 @@
 
 namespace carousel::report {
 
-/// What bringing the structure to a frame cost the simulated machine.
+/// The simulated machine spent this on bringing the structure to a frame.
 struct FrameUpdateCost {
   std::uint64_t cycles = 0;
   std::uint64_t levels = 0, boxes = 0;
