@@ -44,8 +44,11 @@ std::string run_page(const Json& report, const Picture& picture, const Picture& 
   for (const Place& place : machine_places(report).at) places.push_back({place.x, place.y});
   const Json* series = find(report, "time_series");
   const std::string scene = text_at(report, "scene.name");
-  return page_of(scene.empty() ? "Carousel: synthetic traffic" : "Carousel: " + scene, machine_words(report), sections,
-                 facts, series ? packed_series(*series) : Html());
+  std::string machine = machine_words(report);
+  if (const double frames = number_at(report, "frames.count"); frames > 0)
+    machine += fmt::format("; a series of {} frames, of which this page shows the last", frames);
+  return page_of(scene.empty() ? "Carousel: synthetic traffic" : "Carousel: " + scene, machine, sections, facts,
+                 series ? packed_series(*series) : Html());
 }
 
 }  // namespace carousel::report::html
