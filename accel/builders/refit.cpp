@@ -20,7 +20,8 @@ bool same(const scene::Affine& a, const scene::Affine& b) {
 
 bool same_spheres(const std::vector<scene::Sphere>& a, const std::vector<scene::Sphere>& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const scene::Sphere& one, const scene::Sphere& other) {
-    return one.center == other.center && one.radius == other.radius && one.material == other.material;
+    return one.center == other.center && one.radius == other.radius && one.material == other.material &&
+           one.program == other.program && one.half == other.half;
   });
 }
 
@@ -90,7 +91,7 @@ class MeshRefit {
   Aabb box_of(std::uint32_t primitive) const {
     if (primitive >= mesh_.triangle_count()) {
       const scene::Sphere& sphere = mesh_.spheres[primitive - mesh_.triangle_count()];
-      return sphere_box(sphere.center, sphere.radius);
+      return box_around(sphere.center, sphere.reach());
     }
     Aabb box;
     for (std::size_t k = 0; k < 3; ++k) box.extend(mesh_.positions[mesh_.indices[3 * std::size_t{primitive} + k]]);
@@ -108,7 +109,7 @@ Aabb box_below(const Accel& accel, NodeRef root, const scene::Mesh& mesh) {
   if (root.is_inner()) return box_of(accel.nodes[root.node()]);
   Aabb box;
   for (const std::uint32_t index : mesh.indices) box.extend(mesh.positions[index]);
-  for (const scene::Sphere& sphere : mesh.spheres) box.extend(sphere_box(sphere.center, sphere.radius));
+  for (const scene::Sphere& sphere : mesh.spheres) box.extend(box_around(sphere.center, sphere.reach()));
   return box;
 }
 
@@ -168,7 +169,8 @@ ChangedParts changed_parts(const Accel& accel, const scene::Scene& scene, const 
   return out;
 }
 
-std::string refit(Accel& accel, const scene::Scene& after, const SceneChange& change, Executor& executor) {
+std::string refit(Accel& accel, const scene::Scene& after, const SceneChange& change, BvhConfig::Storage storage,
+                  Executor& executor) {
   if (!change.other.empty()) return change.other;
   if (accel.baked_instances > 0) return "an instance with a singular transform stands in the world as triangles";
   std::vector<InstanceTransform> transforms(after.instances.size());
@@ -182,8 +184,7 @@ std::string refit(Accel& accel, const scene::Scene& after, const SceneChange& ch
   }
   if ((promoted > 0) != (accel.promoted_instances > 0)) return "transforms take another room";
 
-  const bool quantised = !accel.full_nodes.empty();
-  if (quantised) accel.nodes = std::move(accel.full_nodes);
+  if (is_quantised(storage)) accel.nodes = std::move(accel.full_nodes);
   const scene::Opacity opacity(after);
   std::unordered_map<std::uint32_t, NodeRef> roots;  // by mesh
   for (std::size_t i = 0; i < after.instances.size(); ++i)
@@ -209,7 +210,7 @@ std::string refit(Accel& accel, const scene::Scene& after, const SceneChange& ch
     });
   });
   refit_top(accel);
-  if (quantised) quantise_boxes(accel);
+  if (is_quantised(storage)) quantise_boxes(accel, plane_bits(storage));
   return "";
 }
 

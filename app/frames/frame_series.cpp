@@ -74,7 +74,7 @@ class FrameSeries {
     if (series_.update == FrameUpdate::kNone && !change.none()) refuse_motion(change, after, row);
     row.update = "kept";
     row.why = series_.update == FrameUpdate::kRefit && !change.none()
-                  ? accel::refit(p_.accel, after, change, *make_executor(p_.threads))
+                  ? accel::refit(p_.accel, after, change, p_.config().bvh.storage, *make_executor(p_.threads))
                   : "";
     p_.scene = std::move(after);
     if (change.none()) {  // the camera or a light may have moved

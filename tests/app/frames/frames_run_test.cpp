@@ -186,6 +186,16 @@ TEST_F(FramesRun, ARefittedTreeIsVisitedAsOftenAsOutsideTheMachine) {
   }
 }
 
+// A refit rounds boxes to as many bits as the build: boxes of 12 bits fit more closely than those of 8.
+TEST_F(FramesRun, ARefitKeepsTheBitsOfAPlane) {
+  const auto tests_of = [&](const std::string& storage) {
+    const Json report = run(kBalls, {"frames={count: 2, step: 0.2}", "engine.kind=cycle", "bvh.storage=" + storage});
+    EXPECT_EQ(report["frames"]["rows"][1]["update"], "refit");
+    return report["frames"]["rows"][1]["depth_first_tests"].get<std::uint64_t>();
+  };
+  EXPECT_LT(tests_of("quantised_12"), tests_of("quantised"));
+}
+
 // Where nothing moves the second frame finds all of the structure in the caches. Where a part moves, lines leave them.
 TEST_F(FramesRun, CachesStayWarm) {
   const Json still = run(kWaves, {"frames={count: 2, step: 0, update: none}", "engine.kind=cycle"});

@@ -28,7 +28,7 @@ TEST(QuantisedNodes, BoxesContainTheFullOnesAndFit8Bits) {
     TestScene scene(builtin_scene(builtin, 3000, 20), 1, 1);
     const accel::Accel& full = scene.accel(bvh_of(6, BvhConfig::Storage::kFull));
     accel::Accel small = full;
-    accel::quantise_boxes(small);
+    accel::quantise_boxes(small, 8);
     const std::vector<std::uint32_t> kept = accel::unquantised_nodes(full);
     EXPECT_EQ(kept.empty(), builtin == BuiltinScene::kTerrain || builtin == BuiltinScene::kSliver);
     std::size_t wider = 0;
@@ -125,7 +125,7 @@ TEST(QuantisedNodes, CountBoxesThatOnlyRoundingHits) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 2000, 0), 60, 1);
   const accel::Accel& full = scene.accel(bvh_of(8, BvhConfig::Storage::kFull));
   accel::Accel small = full;
-  accel::quantise_boxes(small);
+  accel::quantise_boxes(small, 8);
   std::mt19937 random(7);
   const auto corner = [&] {  // a corner of any child
     const accel::Node& node = full.nodes[random() % full.nodes.size()];
