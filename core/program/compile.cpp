@@ -89,9 +89,10 @@ class Compiler {
 
   std::vector<Instruction> run() {
     if (texts_.empty()) fail(0, "expected instructions, found none");
-    if (texts_.size() > kMostInstructions)
-      fail(kMostInstructions,
-           fmt::format("expected {} instructions at most, found {}", kMostInstructions, texts_.size()));
+    if (texts_.size() > kMostInstructions) {
+      line_ = kMostInstructions;
+      fail(0, fmt::format("expected {} instructions at most, found {}", kMostInstructions, texts_.size()));
+    }
     for (line_ = 0; line_ < texts_.size(); ++line_) instruction();
     line_ = texts_.size() - 1;
     if (!blocks_.empty()) {

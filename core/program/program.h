@@ -29,8 +29,8 @@ enum class Op : std::uint8_t {
   kEqual,      ///< d = a == b ? 1 : 0
   kSelect,     ///< d = a != 0 ? b : c
   kHit,        ///< reports a hit at d with the normal (a, b, c)
-  kLoop,       ///< counter a = value
-  kEnd,        ///< counter a is lowered; if it is above 0, goes to target
+  kLoop,       ///< counter c = value
+  kEnd,        ///< counter c is lowered; if it is above 0, goes to target
   kIfZero,     ///< if a == 0, goes to target
   kIfNonzero,  ///< if a != 0, goes to target
   kJump,       ///< goes to target

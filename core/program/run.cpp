@@ -7,7 +7,7 @@ namespace carousel {
 
 ProgramRun run_program(const RayProgram& program, const Ray& ray) {
   ProgramRun out;
-  std::array<float, kMostRegisters> r;
+  std::array<float, kMostRegisters> r{};              // also read, and not used, by instructions without operands
   std::array<std::uint64_t, kMostRegisters> ready{};  // cycles in which the registers may be read
   std::array<std::uint32_t, kMostLoops> counter{};
   r[0] = ray.origin.x, r[1] = ray.origin.y, r[2] = ray.origin.z;
