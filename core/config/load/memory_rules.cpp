@@ -65,9 +65,8 @@ class MemoryRules {
     if (c.bvh.micromaps.states == BvhConfig::Micromaps::States::kNone) return;
     constexpr std::string_view without = ", or bvh.micromaps.states: none";
     if (c.bvh.leaves != BvhConfig::Leaves::kTriangles)
-      breach_("bvh.leaves",
-              fmt::format("strips of triangles have no room for micromaps; expected triangles{}; found {}", without,
-                          enum_name(c.bvh.leaves)));
+      breach_("bvh.leaves", fmt::format("{0} of triangles have no room for micromaps; expected triangles{1}; found {0}",
+                                        enum_name(c.bvh.leaves), without));
     if (c.bvh.treelets.bytes > 0)
       breach_("bvh.treelets.bytes",
               fmt::format("the tree is cut into treelets before there are micromaps; expected 0{}; found {}", without,

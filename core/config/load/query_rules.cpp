@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/config/load/feature_rules.h"
+#include "core/config/machine_conditions.h"
 
 namespace carousel::config {
 
@@ -37,9 +38,7 @@ void check_rounds(const Config& c, const RuleBreach& breach) {
   if (c.topology.shape == TopologyShape::kIndependent) {
     no(c.engine.kind == EngineKind::kNative,
        "expected auto, or engine.kind: cycle, which alone has independent resources with rounds");
-    bool warps = c.testers.simt.warp > 0;
-    for_each_own(c.topology, [&](const OwnOf& one) { warps |= one.testers != nullptr && one.testers->simt.warp > 0; });
-    no(warps, "expected auto, or testers.simt.warp: 0, as warps have no rounds yet");
+    no(conditions::has_warps(c), "expected auto, or testers.simt.warp: 0, as warps have no rounds yet");
     return;
   }
   no(c.collections.traversal != Traversal::kOrdered || c.bvh.treelets.bytes > 0,
