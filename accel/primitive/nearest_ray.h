@@ -30,7 +30,7 @@ struct WaitingNode {
   std::uint16_t depth = 0;
 };
 
-/// All rays of one store share this.
+/// The rays of one store share this.
 struct NearestShared {
   NodeKey root;
   std::uint32_t nearest = 0, buffered = 0;  ///< of QueryConfig
@@ -73,8 +73,8 @@ class NearestRay {
   /// True if hits that lie behind the ends of their boxes have to be told.
   bool fears_strays() const { return shared_->leaves_out && !strayed_; }
   void stray() {
+    shared_->use.counts.strays += !strayed_;  // a test may meet several such hits
     strayed_ = true;
-    ++shared_->use.counts.strays;
   }
   /// The start of the whole ray.
   float start_of_ray() const { return tmin_; }

@@ -58,6 +58,9 @@ template <class Slab>
   if (hits.count == 0 || !slab(ray.slab, box, hit.t, entry)) return false;
   const std::uint32_t primitive = block.primitive[lane] & kPrimitiveMask;
   const bool calls_any_hit = (block.primitive[lane] & kNonOpaqueBit) != 0;
+  // A program may report a hit a little outside of its box.
+  if (NearestRay* const nearest = nearest_of(*ray.record); nearest != nullptr && nearest->fears_strays())
+    for (std::size_t k = 0; k < hits.count; ++k) note_stray(*nearest, ray, box, hits.hit[k].t, entry);
   bool lowered = false;
   for (std::size_t k = 0; k < hits.count; ++k) {
     const ProgramHits::One& one = hits.hit[k];

@@ -91,7 +91,10 @@ void HitOracle::nearest_in_instance(const RayRequest& request, std::uint32_t ins
         for (int i = 0; i < count; ++i) {
           const OraclePrimitives::Candidate& candidate = found[static_cast<std::size_t>(i)];
           if (candidate.hit.t > bound || !primitives_.accepts(request, candidate)) continue;
-          best.insert(std::upper_bound(best.begin(), best.end(), candidate.hit, before), candidate.hit);
+          // A sphere that is touched, or a program, may give one hit twice.
+          const auto at = std::lower_bound(best.begin(), best.end(), candidate.hit, before);
+          if (at != best.end() && !before(candidate.hit, *at)) continue;
+          best.insert(at, candidate.hit);
           if (best.size() > k) best.pop_back();
           if (best.size() == k) bound = best.back().t;
         }
