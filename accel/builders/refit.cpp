@@ -7,6 +7,7 @@
 
 #include "accel/builders/mesh/primitive_blocks.h"
 #include "accel/builders/quantised_boxes.h"
+#include "accel/structure/cull_plane.h"
 #include "accel/structure/sphere.h"
 #include "scene/model/opacity.h"
 
@@ -31,18 +32,9 @@ bool same_primitives(const scene::Mesh& a, const scene::Mesh& b) {
          same_spheres(a.spheres, b.spheres);
 }
 
-Aabb lane_box(const Node& node, int lane) {
-  Aabb box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = node.plane[axis][lane];
-    box.hi[axis] = node.plane[axis + 3][lane];
-  }
-  return box;
-}
-
 Aabb box_of(const Node& node) {
   Aabb box;
-  for (int lane = 0; lane < node.count; ++lane) box.extend(lane_box(node, lane));
+  for (int lane = 0; lane < node.count; ++lane) box.extend(child_box(node, lane));
   return box;
 }
 
@@ -235,7 +227,7 @@ double surface_cost(const Accel& accel) {
       if (!at.ref.is_inner()) continue;
       const Node& node = nodes[at.ref.node()];
       for (int lane = 0; lane < node.count; ++lane)
-        open.push_back({node.child[lane], lane_box(node, lane).half_area()});
+        open.push_back({node.child[lane], child_box(node, lane).half_area()});
     }
     return sum;
   };

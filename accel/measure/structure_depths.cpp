@@ -6,6 +6,7 @@
 #include <set>
 #include <utility>
 
+#include "accel/structure/cull_plane.h"
 #include "core/types/aabb.h"
 
 namespace carousel::accel {
@@ -14,15 +15,6 @@ namespace {
 
 using Level = StructureDepths::Level;
 constexpr std::size_t kLevels = 3, kMostDepth = 4095;
-
-double half_area(const Node& node, int lane) {
-  Aabb box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = node.plane[axis][lane];
-    box.hi[axis] = node.plane[axis + 3][lane];
-  }
-  return box.half_area();
-}
 
 /// Goes through the structures of all levels, each once.
 class DepthWalk {
@@ -68,9 +60,7 @@ class DepthWalk {
     if (root.ref.is_inner()) {
       const Node& node = accel_.nodes[root.ref.node()];
       Aabb box;
-      for (int lane = 0; lane < node.count; ++lane)
-        for (const int side : {0, 3})
-          box.extend(Vec3{node.plane[side][lane], node.plane[side + 1][lane], node.plane[side + 2][lane]});
+      for (int lane = 0; lane < node.count; ++lane) box.extend(child_box(node, lane));
       whole = box.half_area();
     }
     std::vector<Found>& out = found[static_cast<std::size_t>(level)];
@@ -96,7 +86,7 @@ class DepthWalk {
           open(Level::kMeshes, {kNoInstance, child});  // the root of merged meshes
           ++references;
         } else {
-          open_here.push_back({child, at.depth + 1, half_area(node, lane)});
+          open_here.push_back({child, at.depth + 1, child_box(node, lane).half_area()});
         }
       }
     }

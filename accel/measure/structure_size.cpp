@@ -4,20 +4,12 @@
 #include <unordered_set>
 #include <vector>
 
+#include "accel/structure/cull_plane.h"
 #include "core/types/aabb.h"
 
 namespace carousel::accel {
 
 namespace {
-
-Aabb lane_box(const Node& node, int lane) {
-  Aabb box;
-  for (int axis = 0; axis < 3; ++axis) {
-    box.lo[axis] = node.plane[axis][lane];
-    box.hi[axis] = node.plane[axis + 3][lane];
-  }
-  return box;
-}
 
 /// Adds what stands below `root` and is here; `surface_cost` grows by its visits times the mesh's `weight`, or its
 /// primitives if that is 0. Nodes that every rank has count at the first.
@@ -31,7 +23,7 @@ void add_mesh(const Accel& accel, NodeRef root, double weight, StructureSize& ou
   Aabb whole;
   if (root.is_inner())
     for (int lane = 0; lane < accel.nodes[root.node()].count; ++lane)
-      whole.extend(lane_box(accel.nodes[root.node()], lane));
+      whole.extend(child_box(accel.nodes[root.node()], lane));
   double visits = 0;
   std::vector<bool> found;  // a mesh's primitives are numbered from 0 on
   std::uint64_t primitives = 0;
@@ -60,7 +52,7 @@ void add_mesh(const Accel& accel, NodeRef root, double weight, StructureSize& ou
       visits += chance;
     }
     const Node& node = accel.nodes[at.ref.node()];
-    for (int lane = 0; lane < node.count; ++lane) open.push_back({node.child[lane], lane_box(node, lane).half_area()});
+    for (int lane = 0; lane < node.count; ++lane) open.push_back({node.child[lane], child_box(node, lane).half_area()});
   }
   out.primitives += primitives;
   out.surface_cost += visits * (weight > 0 ? weight : static_cast<double>(primitives));
