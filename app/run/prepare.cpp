@@ -154,9 +154,8 @@ accel::StructureSize whole_structure(const accel::StructureSize& share, ringbus:
 
 void make_micromaps(Prepared& p, const BvhConfig::Micromaps& c) {
   Phase phase("micromaps");
-  if (p.micromaps == nullptr)  // they are of textures, and stay when triangles move
-    p.micromaps = std::make_unique<scene::OpacityMicromaps>(
-        shading::make_micromaps(p.scene, static_cast<int>(c.level), c.states == BvhConfig::Micromaps::States::kFour));
+  p.micromaps = std::make_unique<scene::OpacityMicromaps>(
+      shading::make_micromaps(p.scene, static_cast<int>(c.level), c.states == BvhConfig::Micromaps::States::kFour));
   accel::set_micromaps(p.accel, *p.micromaps);
   const std::string bytes = report::bytes_text(p.micromaps->size_bytes());
   phase.result(fmt::format("{} triangles with a map, {}", p.micromaps->maps(), bytes));
