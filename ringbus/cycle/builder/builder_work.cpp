@@ -47,7 +47,7 @@ class Sources {
 
   /// Of the triangles of a leaf; no bytes if they have none.
   ShapeSpan micromaps(const accel::Accel& accel, NodeRef leaf) const {
-    return {micromaps_ + accel.micromap_places.before(leaf.first_block()), accel.micromap_places.of(leaf)};
+    return {micromaps_ + accel.micromaps.places.before(leaf.first_block()), accel.micromaps.places.of(leaf)};
   }
 
  private:
