@@ -1,7 +1,6 @@
 #include "accel/primitive/nearest_ray.h"
 
 #include <algorithm>
-#include <utility>
 
 namespace carousel::accel {
 
@@ -34,25 +33,25 @@ void NearestRay::start(RayRecord& record) {
 std::uint64_t NearestRay::insert(const Hit& hit) {
   NearestCounts& counts = shared_->use.counts;
   ++counts.offered;
-  const std::uint64_t owed = std::exchange(shared_->owed_steps, 0);
   // A round that begins at the root again meets the hits that the rounds before have found.
   if (was_found(hit)) {
     counts.read_bytes += kBufferedHitBytes;
-    return owed + 1;
+    return 1;
   }
   std::uint32_t at = count_;
   while (at > 0 && nearer(hit, buffer_[at - 1])) --at;
   const std::uint32_t compared = count_ - at + (at > 0 ? 1 : 0);
   counts.read_bytes += kBufferedHitBytes * compared;
-  const std::uint64_t steps = owed + std::max(1u, compared);
+  std::uint64_t steps = std::max(1u, compared);
   if (at > 0 && !nearer(buffer_[at - 1], hit)) return steps;  // it is there
-  if (at == capacity()) {
-    if (resumes()) set_hit_aside(hit);
-    return steps;
+  const bool evicts = at < capacity() && full();
+  if (resumes() && (at == capacity() || evicts)) {
+    set_hit_aside(evicts ? buffer_[count_ - 1] : hit);
+    ++steps;
   }
-  if (full()) {
+  if (at == capacity()) return steps;
+  if (evicts) {
     ++counts.evicted;
-    if (resumes()) set_hit_aside(buffer_[count_ - 1]);
     --count_;
   }
   std::copy_backward(buffer_ + at, buffer_ + count_, buffer_ + count_ + 1);
@@ -141,7 +140,7 @@ void NearestRay::end_round() {
   point_to(this, *record_);
 }
 
-/// Takes the nearest of the hits that wait, which come in their order: a step each.
+/// Takes the nearest of the hits that wait, which come in their order. Their steps have been paid.
 void NearestRay::refill() {
   NearestCounts& counts = shared_->use.counts;
   while (!hits_.empty() && !full()) {
@@ -149,7 +148,6 @@ void NearestRay::refill() {
     std::pop_heap(hits_.begin(), hits_.end(), farther_hit);
     hits_.pop_back();
     taken_back(kBufferedHitBytes);
-    ++shared_->owed_steps;
     if (was_found(hit) || (count_ > 0 && !nearer(buffer_[count_ - 1], hit))) continue;  // it was offered twice
     buffer_[count_++] = hit;
     ++counts.inserted;

@@ -38,7 +38,6 @@ struct NearestShared {
   bool leaves_out = false;  ///< a round that begins again leaves out boxes that end before the hits that it has found
   NearestUse use{};
   std::uint64_t sent_bytes = 0;  ///< of hits that rays have found, besides each ray's first, since they were last taken
-  std::uint64_t owed_steps = 0;  ///< of insertions at the start of rounds; the next insertion takes their time as well
   HitsDigest digest{};           ///< of all hits of completed rays
 };
 
@@ -68,7 +67,8 @@ class NearestRay {
   /// Begins with a record that accel::start_record() has made. It keeps its place in memory until finish().
   void start(RayRecord& record);
   /// Offers a hit. A hit that is offered again, as by two leaves that share its primitive, changes nothing. Returns the
-  /// steps that it takes: comparisons with hits in the buffer, from its far end.
+  /// steps that it takes: comparisons with hits in the buffer, from its far end, and one for a hit that is set aside,
+  /// which pays its way back into the buffer in advance. It may never be taken back.
   std::uint64_t insert(const Hit& hit);
   /// True if hits that lie behind the ends of their boxes have to be told.
   bool fears_strays() const { return shared_->leaves_out && !strayed_; }

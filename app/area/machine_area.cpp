@@ -98,6 +98,12 @@ double register_kib(const Config& c, std::int64_t resource) {
   return static_cast<double>(stacks * simt.stack_entries) * kEntryBytes / kKiB;
 }
 
+double builder_kib(const Config& c) {
+  return static_cast<double>(c.frames->builder.local_primitives * BuilderConfig::kRecordBytes +
+                             c.frames->builder.requests * c.memory.line_bytes) /
+         kKiB;
+}
+
 report::Area machine_area(const Config& c, const SceneFacts& scene) {
   report::Area out;
   report::AreaParts& parts = out.parts;
@@ -160,6 +166,10 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *
                                      std::max<std::int64_t>(1, c.shading.products_per_cycle));
   shaders.mm2 = shaders.size * cost(c, Cost::kShaderArea);
+  if (c.frames && c.frames->count > 1 && c.frames->update != FrameUpdate::kNone) {
+    store(AreaPart::kBuilder, builder_kib(c));
+    parts[AreaPart::kBuilder].mm2 += static_cast<double>(c.frames->builder.boxes_per_cycle) * cost(c, Cost::kBoxUnit);
+  }
   out.mm2 = parts.mm2();
   return out;
 }

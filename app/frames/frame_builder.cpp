@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "app/area/machine_area.h"
 #include "core/config/costs.h"
 #include "ringbus/cycle/builder/builder_unit.h"
 #include "ringbus/cycle/builder/builder_work.h"
@@ -48,13 +49,16 @@ std::uint64_t drop_lines(std::vector<std::vector<std::uint64_t>>& cached, const 
   return dropped;
 }
 
-/// A box that is added to others costs what a test of one does: as many comparisons.
+/// A box that is added to others costs what a test of one does: as many comparisons. Lines pass the builder's store,
+/// and each box is read there.
 std::optional<double> joules_of(const Config& config, const BuilderUse& use, std::uint64_t bytes) {
   if (config.energy.profile == CostProfile::kNone) return std::nullopt;
   const Costs costs = costs_of(config);
   const bool hbm = config.memory.dram.preset == DramConfig::Preset::kHbm2;
   double pj = static_cast<double>(bytes) * costs.of(hbm ? Cost::kHbm : Cost::kDram) +
-              static_cast<double>(use.boxes) * costs.of(energy_of(UnitKind::kBox));
+              static_cast<double>(use.boxes) * costs.of(energy_of(UnitKind::kBox)) +
+              static_cast<double>(bytes + use.boxes * BuilderConfig::kRecordBytes) / 8 *
+                  costs.sram_access_pj(builder_kib(config));
   if (use.dram)
     for (const ringbus::DramUse::Channel& channel : use.dram->channels)
       pj += static_cast<double>(channel.counts.row_misses + channel.counts.row_conflicts) *

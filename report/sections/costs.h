@@ -165,7 +165,8 @@ enum class AreaPart : std::uint8_t {
   kL2,
   kLinkQueues,
   kWires,
-  kShaders
+  kShaders,
+  kBuilder
 };
 
 struct AreaPartRow {
@@ -186,6 +187,8 @@ inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
      "message for each ray and box (KiB)"},
     {"wires", "wires", "wires of links, a bit wide, side by side (mm)"},
     {"shaders", "shaders", "shader workers (products/cycle)"},
+    {"builder", "builder",
+     "the unit that brings the structure to each frame: its box pipeline, its store and its lines on their way (KiB)"},
 });
 
 struct AreaOf {

@@ -62,8 +62,12 @@ inline constexpr auto kEnumNames<PictureFile> = [] {
 
 /// The unit that builds or refits the structure in the simulated machine.
 struct BuilderConfig {
+  /// Of a primitive's record: a box and a number, at a border of 32 bytes.
+  static constexpr std::int64_t kRecordBytes = 32;
+
   std::int64_t bytes_per_cycle = 64;
   std::int64_t boxes_per_cycle = 1;
+  std::int64_t latency_cycles = 4;
   std::int64_t requests = 64;
   std::int64_t local_primitives = 1024;
 };
@@ -109,6 +113,8 @@ void describe(V& v, BuilderConfig& c) {
           "The bytes that the builder reads and writes in a cycle.");
   v.field("boxes_per_cycle", c.boxes_per_cycle, IntRange{1, 1024}, "boxes/cycle",
           "The boxes that it adds to others, or sorts into bins, in a cycle.");
+  v.field("latency_cycles", c.latency_cycles, IntRange{1, 1000}, "cycles",
+          "The cycles from the last box of a task into this pipeline to its result.");
   v.field("requests", c.requests, IntRange{1, 65536}, "lines", "The lines that it can wait for at a time.");
   v.field("local_primitives", c.local_primitives, IntRange{1, 1 << 24}, "primitives",
           "A subtree of at most so many primitives is built in a store of its own, from one reading of them.");

@@ -26,7 +26,7 @@ void describe(V& v, const FrameUpdateCost& r) {
   v.field("bytes_written", r.bytes_written, "bytes", "bytes of lines that it wrote to the memory");
   v.field("top_bytes", r.top_bytes, "bytes", "part of both that is the top level's; the rest is that of meshes");
   v.field("lines_dropped", r.lines_dropped, "lines", "lines of shared caches that it made out of date");
-  v.field("joules", r.joules, "J", "energy of its bytes of the memory and of its boxes, with energy.profile");
+  v.field("joules", r.joules, "J", "energy of its bytes of the memory, its store and its boxes, with energy.profile");
 }
 
 /// A picture of the series.

@@ -16,6 +16,7 @@ BuilderUnit::BuilderUnit(const BuilderConfig& config, const MemoryConfig& memory
       box_rate_(static_cast<std::uint64_t>(config.boxes_per_cycle)),
       line_bytes_(fetched_bytes(memory)),
       most_requests_(static_cast<std::size_t>(config.requests)),
+      box_latency_(static_cast<Cycle>(config.latency_cycles)),
       latency_(MemoryAgent::request_latency(memory)),
       work_(work),
       requests_(requests),
@@ -103,7 +104,7 @@ void BuilderUnit::take_answer(std::uint64_t line) {
 void BuilderUnit::compute(std::size_t number) {
   boxes_ = std::max(boxes_, now_ * box_rate_) + task(number).boxes;
   use_.boxes += task(number).boxes;
-  computed_.push_back({ceil_div(boxes_, box_rate_), number});
+  computed_.push_back({ceil_div(boxes_, box_rate_) + box_latency_ - 1, number});
 }
 
 std::vector<std::uint64_t> BuilderUnit::lines_of(const std::vector<ShapeSpan>& spans) const {

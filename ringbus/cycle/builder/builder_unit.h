@@ -28,9 +28,9 @@ struct BuilderUse {
 };
 
 /// The unit that builds: it asks the memory for lines, adds up boxes and writes lines, level by level. It has a port of
-/// so many bytes a cycle for all lines, a pipeline of so many boxes a cycle, and no cache: each task asks for each of
-/// its lines once. A line that it writes leaves when the task's boxes are done, and what the next level reads comes to
-/// the memory behind it.
+/// so many bytes a cycle for all lines, a pipeline of so many boxes a cycle with a latency, and no cache: each task
+/// asks for each of its lines once. A line that it writes leaves when the task's boxes are done, and what the next
+/// level reads comes to the memory behind it.
 class BuilderUnit final : public Agent {
  public:
   BuilderUnit(const BuilderConfig& config, const MemoryConfig& memory, const BuilderWork& work,
@@ -61,7 +61,7 @@ class BuilderUnit final : public Agent {
 
   std::uint64_t port_rate_, box_rate_, line_bytes_;
   std::size_t most_requests_;
-  Cycle latency_;
+  Cycle box_latency_, latency_;  // of the pipeline, and of requests on their way
   const BuilderWork& work_;
   Channel<std::uint64_t>&requests_, &answers_;
 

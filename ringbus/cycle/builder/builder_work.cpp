@@ -12,9 +12,9 @@ using accel::NodeRef;
 
 constexpr std::uint32_t kPositionBytes = 36;  // three vertices
 constexpr std::uint32_t kMatrixBytes = 48;
-constexpr std::uint32_t kRecordBytes = 32;  // a box and a number, at a border of 32 bytes
-constexpr std::uint64_t kChunk = 64;        // primitives of a task that streams
-constexpr std::uint64_t kCorners = 8;       // of an instance's box, which are brought into the world
+constexpr std::uint32_t kRecordBytes = BuilderConfig::kRecordBytes;
+constexpr std::uint64_t kChunk = 64;   // primitives of a task that streams
+constexpr std::uint64_t kCorners = 8;  // of an instance's box, which are brought into the world
 
 /// Where the builder finds what it reads beside the structure.
 class Sources {

@@ -28,7 +28,10 @@ struct RayStages {
       if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, known));
     const Cycle looked_up = beside(UnitKind::kMicromap, met);
     const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, looked_up) : looked_up;
-    return std::max(boxed, beside(UnitKind::kHitBuffer, seen));
+    const Cycle buffered = beside(UnitKind::kHitBuffer, seen);
+    // A hit finds its place in the buffer step by step, and the next one when it is there.
+    const Cycle in_turn = seen + units[UnitKind::kHitBuffer].chain(starts[UnitKind::kHitBuffer]);
+    return std::max({boxed, buffered, in_turn});
   }
 };
 

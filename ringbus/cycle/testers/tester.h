@@ -85,7 +85,8 @@ class Tester {
     for (const UnitKindRow& row : kUnitKinds)
       if (row.stage != Stage::kAnyHit || stages_.inline_any_hit)
         vectors[row.kind] = starts(row.kind, ray.passes(row.kind), {1});
-    vectors[UnitKind::kDecoder] = ray.tests[UnitKind::kDecoder];
+    // Neither the decoding of a block nor the steps of a ray's buffer are spread over lanes.
+    for (const UnitKind kind : {UnitKind::kDecoder, UnitKind::kHitBuffer}) vectors[kind] = ray.tests[kind];
     return stages_.through(banks_, at, vectors);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
@@ -243,12 +244,16 @@ class Tester {
         tested(banks_[UnitKind::kMicromap], met, starts(UnitKind::kMicromap, counts, of));
     const UnitBank::Reservation seen =
         tested(banks_[UnitKind::kAnyHit], known, starts(UnitKind::kAnyHit, lookups(counts), of));
-    return tested(banks_[UnitKind::kHitBuffer], seen, starts(UnitKind::kHitBuffer, counts, of)).last;
+    UnitBank& buffers = banks_[UnitKind::kHitBuffer];
+    // Steps of a ray go one after another. The mean is taken for the ray that comes first.
+    const Cycle in_turn =
+        seen.first + buffers.chain(ceil_div(counts.buffer_steps, std::max<std::uint64_t>(1, of.rays)));
+    return std::max(tested(buffers, seen, starts(UnitKind::kHitBuffer, counts, of)).last, in_turn);
   }
   /// The least time until the answer to a program of the last ray that comes: the mean of the programs is taken for it.
   Cycle program_time(UnitKind kind, const IntersectionCounts& counts) const {
     if (kind != UnitKind::kProcedural || counts.programs == 0) return 0;
-    return banks_[kind].latency() + (ceil_div(counts.program_cycles, counts.programs) - 1) * banks_[kind].interval();
+    return banks_[kind].chain(ceil_div(counts.program_cycles, counts.programs));
   }
   /// Any-hit calls that units of the resource answer.
   std::uint64_t lookups(const IntersectionCounts& counts) const {

@@ -74,6 +74,11 @@ class UnitBank {
 
   Cycle latency() const { return latency_; }
   Cycle interval() const { return interval_; }
+  /// The time of so many tests of which each is started after the one before by an interval, however many units there
+  /// are.
+  Cycle chain(std::uint64_t tests) const {
+    return tests == 0 ? 0 : latency_ + (static_cast<Cycle>(tests) - 1) * interval_;
+  }
   Cycle free_at() const { return free_at_; }  ///< the first cycle in which a test may start
   Cycle busy() const { return busy_; }        ///< cycles taken over all time, as far as tests have been reserved
   std::uint64_t tests() const { return tests_; }

@@ -37,7 +37,8 @@ inline std::uint64_t inversion_passes(const IntersectionCounts& counts) {
 }
 
 /// The passes that the tests of a single ray need at one strip. A strip has at most 128 triangles (eight leaves of 16
-/// in a mixed node), of 33 passes each where all of their volumes are exact. Its programs have 2^31 passes at most.
+/// in a mixed node), of 33 passes each where all of their volumes are exact, and of 66 steps each of a buffer of 64
+/// hits. Its programs have 2^31 passes at most.
 struct RayTests {
   PerUnit<std::uint16_t> tests;      ///< by the kind of unit that makes them
   std::uint8_t inversion = 0;        ///< ahead of them, through the transform units

@@ -1,5 +1,6 @@
 // Series of frames as a user runs them. Each frame is held against a run of that moment alone, whose structure is built
 // from nothing, and against the reference tracer.
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -139,6 +140,25 @@ TEST_F(FramesRun, TheBuilderMovesWhatARefitNeeds) {
   EXPECT_GT(cycles("frames.builder.requests=1"), 13 * 200) << "one line at a time";
   EXPECT_GE(cycles("frames.builder.bytes_per_cycle=1"), 64 * (13 + 7) - 64) << "its port is the limit";
   EXPECT_GT(cycles("memory.dram_latency_cycles=2000"), 2 * 2000);
+  EXPECT_EQ(cycles("frames.builder.latency_cycles=100"), update["cycles"].get<std::uint64_t>() + 2 * (100 - 4))
+      << "once a level";
+}
+
+// A box unit has 0.126 mm2 and a KiB 0.00456 at 45 nm. The store has 1,024 records of 32 bytes and 64 lines of 64
+// bytes: 36 KiB, of which 64 bits take 20 pJ x 5^(log 36/32 / log 32). A byte of the memory is 244 pJ, and a box 29 pJ.
+TEST_F(FramesRun, TheBuilderHasAnAreaAndItsStoreTakesEnergy) {
+  const Json r = run("{builtin: terrain, triangles: 2}",
+                     {"frames.count=2", "engine.kind=cycle", "energy.profile=n45", "frames.builder.boxes_per_cycle=3"});
+  EXPECT_EQ(r["area"]["parts"]["builder"]["size"], 36);
+  EXPECT_NEAR(r["area"]["parts"]["builder"]["mm2"].get<double>(), 36 * 0.00456 + 3 * 0.126, 1e-5);
+  const Json& update = r["frames"]["rows"][1]["builder"];
+  const double bytes = 64.0 * (13 + 7), boxes = update["boxes"],
+               access = 20 * std::pow(5, std::log(36.0 / 32) / std::log(32));
+  EXPECT_NEAR(update["joules"].get<double>(), 1e-12 * (244 * bytes + 29 * boxes + access * (bytes + 32 * boxes) / 8),
+              1e-13);
+  EXPECT_EQ(run("{builtin: terrain, triangles: 2}",
+                {"engine.kind=cycle", "energy.profile=n45"})["area"]["parts"]["builder"]["mm2"],
+            0);
 }
 
 TEST_F(FramesRun, ARebuildMovesMoreThanARefit) {

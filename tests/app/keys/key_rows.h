@@ -47,6 +47,7 @@ inline std::vector<KeyRow> key_rows() {
       {"frames.step", kTerrain, {"frames.count=2"}, {"1"}},
       {"frames.builder.bytes_per_cycle", kTerrain, {"frames.count=2"}, {"1"}},
       {"frames.builder.boxes_per_cycle", kTerrain, {"frames.count=2"}, {"1024"}},
+      {"frames.builder.latency_cycles", kTerrain, {"frames.count=2"}, {"100"}},
       {"frames.builder.requests", kTerrain, {"frames.count=2"}, {"1"}},
       {"frames.builder.local_primitives", kTerrain, {"frames={count: 2, update: rebuild}"}, {"1"}},
       {"engine.kind", kTerrain},

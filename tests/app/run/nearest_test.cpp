@@ -291,6 +291,14 @@ TEST(Nearest, CostsTimeBytesJoulesAndArea) {
   EXPECT_GT(many["energy"]["joules"].get<double>(), one["energy"]["joules"].get<double>());
   EXPECT_GT(part(many, "area", "ray_stores", "size"), 5 * part(one, "area", "ray_stores", "size"));
   EXPECT_LT(part(many, "area", "ray_stores", "size"), 7 * part(one, "area", "ray_stores", "size"));
+  // The steps of one ray go one after another, so that more units and lanes are of no use to a ray that is alone.
+  for (const std::string shape : {"independent", "ring"}) {
+    const std::string alone = "topology.resources=1 topology.shape=" + shape +
+                              " rays.slots_per_resource=1 collections.ready=1 rays.query.nearest=16 ";
+    EXPECT_EQ(reported(alone + "testers.hit_buffer.units=8")["engine"]["cycles"],
+              reported(alone + "testers.hit_buffer.units=1")["engine"]["cycles"])
+        << shape;
+  }
 }
 
 // A picture is that of rays with one hit each; all hits of its rays are compared with the oracle's.
