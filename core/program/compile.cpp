@@ -235,6 +235,8 @@ class Compiler {
     const char* const end = word.text.data() + word.text.size();
     const auto [last, error] = std::from_chars(word.text.data(), end, value);
     if (error == std::errc{} && last == end && std::isfinite(value)) return value;
+    if (error == std::errc::result_out_of_range && last == end)
+      fail(word.column, fmt::format("expected a number that a float of 32 bits holds, found {}", word.text));
     if (const auto found = parameters_.find(std::string(word.text)); found != parameters_.end())
       return static_cast<float>(found->second);
     std::vector<std::string> names;

@@ -335,6 +335,7 @@ class Messages(unittest.TestCase):
                 (["mov a, ox", "break a", hit], "6:9", "expected a loop around this break"),
                 (["mov ox, oy", hit], "5:13", "ox belongs to the ray and is only read"),
                 (["load a, radius", hit], "5:17", "expected a number or the name of a parameter, found 'radius'"),
+                (["load a, 1e-60", hit], "5:17", "expected a number that a float of 32 bits holds, found 1e-60"),
                 (["add a, ox, 1", hit], "5:20", "expected the name of a register, found '1'"),
                 (["mov a, ox"], "5:9", "expected a hit somewhere in the program"),
         ):
@@ -346,6 +347,8 @@ class Messages(unittest.TestCase):
         hit = ["hit tmin, dx, dy, dz"]
         self.assertIn("expected low below high along each axis",
                       self.refused(hit, "    bounds: {low: [0, 0, 0], high: [1, 0, 1]}\n"))
+        self.assertIn("own.parameters.radius: the program loads no number of this name",
+                      self.refused(hit, "    parameters: {radius: 2}\n"))
         self.assertIn("found 'ow'; did you mean 'own'?", self.refused(hit, objects="[{primitive: ow}]"))
         self.assertIn("expected the key 'primitive'", self.refused(hit, objects="[{scale: 2}]"))
         self.assertIn("did you mean 'offset'?", self.refused(hit, "    ofset: 1\n"))

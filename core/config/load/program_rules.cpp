@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -12,6 +13,16 @@
 namespace carousel::config {
 
 namespace {
+
+/// True if an instruction that compiles loads this parameter, which is its last word then.
+bool loads(std::string_view instruction, std::string_view parameter) {
+  constexpr std::string_view kBetween = " \t,";
+  const auto word = [&](std::size_t from) { return instruction.find_first_not_of(kBetween, from); };
+  const std::size_t first = word(0), last = instruction.find_last_not_of(kBetween);
+  if (first == instruction.npos || !instruction.substr(first).starts_with("load")) return false;
+  const std::size_t before = instruction.find_last_of(kBetween, last);
+  return instruction.substr(before + 1, last - before) == parameter;
+}
 
 class ProgramRules {
  public:
@@ -42,12 +53,19 @@ class ProgramRules {
                      fmt::format("expected low below high along each axis, found {} and {} along {}",
                                  primitive.bounds.low[axis], primitive.bounds.high[axis], "xyz"[axis]));
     ProgramFault fault;
-    if (program_of(primitive, c_.programs, fault)) return;
+    if (program_of(primitive, c_.programs, fault)) return every_parameter_is_loaded(key, primitive);
     const std::string line =
         primitive.program.empty() ? key + ".program" : fmt::format("{}.program.{}", key, fault.line);
     SourcePosition at = positions_.find(line);
     if (at.column > 0) at.column += static_cast<int>(fault.column);
     issues_.push_back({std::move(at), line, std::move(fault.message)});
+  }
+
+  void every_parameter_is_loaded(const std::string& key, const PrimitiveConfig& primitive) {
+    for (const auto& [name, value] : primitive.parameters.values)
+      if (std::ranges::none_of(primitive.program, [&](const std::string& text) { return loads(text, name); }))
+        issue(key + ".parameters." + name,
+              "the program loads no number of this name; expected an instruction that does");
   }
 
   void object_has_a_primitive(std::size_t i) {

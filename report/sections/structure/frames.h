@@ -57,7 +57,7 @@ void describe(V& v, const Frame& r) {
   v.field("cycles", r.cycles, "cycles", "time of its rays, without the update before them (cycle)");
   v.field("rays", r.rays, "rays", "rays of the frame");
   v.field("box_tests", r.box_tests, "tests", "tests of a ray against a box");
-  v.field("primitive_tests", r.primitive_tests, "tests", "tests of a ray against a triangle or sphere");
+  v.field("primitive_tests", r.primitive_tests, "tests", "tests of a ray against a primitive");
   v.field("memory_bytes", r.memory_bytes, "bytes", "bytes that its rays read from the memory and wrote to it (cycle)");
   v.field("joules", r.joules, "J", "energy of its rays, with energy.profile");
   v.field("surface_cost", r.surface_cost, "nodes",
@@ -77,7 +77,7 @@ void describe(V& v, const Frame& r) {
           "more than the rebuild costs, if their time went down as their tests do (cycle)");
   v.field("rebuild_pays", r.rebuild_pays, "",
           "true if the refitted tree is so worn that rebuild_cycles and cycles_rebuilt are less than the refit and its "
-          "rays (cycle)");
+          "rays; false without cycles_rebuilt where the tests of a rebuilt tree foretell no gain (cycle)");
   v.section("digest", r.digest, "digests of the frame");
 }
 
