@@ -88,6 +88,21 @@ TEST_F(PowerRun, TheSamplesAddUpToTheRun) {
   }
 }
 
+// The row of bytes is made from other counters. A byte through the port of a link is 0.45 pJ, and its number of 32
+// bits.
+TEST_F(PowerRun, TheSamplesFollowTheBytes) {
+  const Json r = run({});
+  const std::vector<double> joules = joules_over_time(r).at("ports");
+  const Json& rows = r["time_series"]["rows"];
+  const auto row = std::ranges::find_if(
+      rows, [](const Json& one) { return one["part"] == "machine" && one["quantity"] == "bytes on links"; });
+  ASSERT_NE(row, rows.end());
+  const auto bytes = (*row)["values"].get<std::vector<double>>();
+  ASSERT_EQ(bytes.size(), joules.size());
+  for (std::size_t i = 0; i < bytes.size(); ++i)
+    EXPECT_NEAR(joules[i], 1e-12 * double{0.45f} * bytes[i], 1e-20) << "sample " << i;
+}
+
 // Samples of 4 cycles, which 100 is a multiple of.
 TEST_F(PowerRun, ThePeakIsThatOfTheSamples) {
   for (const std::string size : {"4", "6"}) {
