@@ -40,7 +40,7 @@ double program_kib(const Config& c) {
   for (const auto& [name, primitive] : c.primitives.named) instructions += primitive.program.size();
   constexpr double kRegisterBytes = 4;
   const double unit = static_cast<double>(kInstructionBytes * instructions) + kRegisterBytes * kMostRegisters;
-  return unit * static_cast<double>(c.topology.resources * own_testers(c)) / kKiB;
+  return unit * static_cast<double>(ray_owners(c.topology) * own_testers(c)) / kKiB;
 }
 
 /// A place of a link's queue: a packet, and what travels in its place.
@@ -114,7 +114,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     parts[part].mm2 += kib * cost(c, Cost::kSramArea);
   };
   for (std::int64_t r = 0; r < c.topology.resources; ++r)
-    add_units(parts[AreaPart::kUnits], c, scene, own_sections(c, r).testers);
+    add_units(parts[AreaPart::kUnits], c, scene, built_sections(c, r).testers);
   const auto all = [&](const auto& of) { return static_cast<double>(sum_of_resources(c, of)); };
   const auto slots = static_cast<double>(all_slots(c));
   parts[AreaPart::kUnits].mm2 += program_kib(c) * cost(c, Cost::kSramArea);

@@ -88,6 +88,7 @@ std::string graph_facts_text(const TopologyConfig& config) {
   const ringbus::GraphFacts facts = ringbus::graph_facts(config);
   std::string out = fmt::format("graph: {} resources, {}, {} links of one way\n", facts.resources,
                                 facts.bus.empty() ? fmt::format("{} routers", facts.routers) : "a bus", facts.links);
+  out += facts.served;
   if (facts.links == 0) return out;
   out += fmt::format(
       "ways: {:.4f} cycles and {:.4f} nodes on average, {} cycles at most, from {} to {}; {} links at "

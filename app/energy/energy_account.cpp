@@ -19,10 +19,11 @@ namespace {
 constexpr double kWord = 8;  // bytes of an access
 constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
 
-/// The mean of all resources, as their accesses are counted together.
+/// The mean of all resources that have any, as their accesses are counted together.
 template <class Of>
 double mean(const Config& c, const Of& of) {
-  return static_cast<double>(sum_of_resources(c, of)) / static_cast<double>(c.topology.resources);
+  const std::int64_t those = sum_of_resources(c, [&](const OwnSections& one) { return of(one) > 0 ? 1 : 0; });
+  return static_cast<double>(sum_of_resources(c, of)) / static_cast<double>(std::max<std::int64_t>(1, those));
 }
 
 /// In the order of the report's links.

@@ -37,7 +37,7 @@ TestersConfig in_warps(TestersConfig testers, std::int64_t times, std::int64_t s
 /// The resources that differ from the rest, each by its number; what they have for packets and collections is left out.
 std::vector<ResourceOverride> overrides_of(const Config& c) {
   std::vector<ResourceOverride> out;
-  for (std::int64_t r = 0; r < c.topology.resources; ++r) {
+  for (std::int64_t r = 0; r < ray_owners(c.topology); ++r) {
     ResourceOverride own;
     own.resource = r;
     bool differs = false;
@@ -64,7 +64,7 @@ std::int64_t sharing_of(const Config& c) {
   if (c.topology.shape == TopologyShape::kGraph)
     for (const GraphNode& node : c.topology.nodes)
       if (node.kind == GraphNodeKind::kCache) caches += node.count.value_or(1);
-  return caches == 0 ? c.memory.shared_by : (c.topology.resources + caches - 1) / caches;
+  return caches == 0 ? c.memory.shared_by : (ray_owners(c.topology) + caches - 1) / caches;
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Config conventional_twin(const LocatedConfig& located) {
                         c.testers.simt.warp, enum_name(c.topology.shape)));
   Config t = c;
   t.topology = {};
-  t.topology.resources = c.topology.resources;
+  t.topology.resources = ray_owners(c.topology);
   t.topology.shape = TopologyShape::kIndependent;
   t.topology.link = c.topology.link;
   t.topology.overrides = overrides_of(c);

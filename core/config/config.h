@@ -99,7 +99,7 @@ inline std::int64_t own_testers(const Config& c) {
 /// The number of shader workers that `shading.workers` stands for.
 inline std::int64_t shader_workers(const Config& c) {
   return c.shading.workers.value_or(
-      c.engine.kind == EngineKind::kCycle ? std::min<std::int64_t>(256, 2 * c.topology.resources) : 2);
+      c.engine.kind == EngineKind::kCycle ? std::min<std::int64_t>(256, 2 * ray_owners(c.topology)) : 2);
 }
 
 namespace config {

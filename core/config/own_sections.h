@@ -19,9 +19,11 @@ struct OwnSections {
   TestersConfig testers;
 };
 
-/// The sections of one resource. Only the cycle engine has resources that differ.
+/// The sections of one resource. Only the cycle engine has resources that differ, but for packet processes, which store
+/// no rays.
 inline OwnSections own_sections(const Config& c, std::int64_t resource) {
   OwnSections out{c.rays, c.packets, c.collections, c.memory, c.testers};
+  if (resource >= ray_owners(c.topology)) out.rays.slots_per_resource = 0;
   if (c.engine.kind != EngineKind::kCycle) return out;
   for_each_own(c.topology, [&](const OwnOf& one) {
     if (!one.is_about(resource)) return;
@@ -33,15 +35,29 @@ inline OwnSections own_sections(const Config& c, std::int64_t resource) {
   return out;
 }
 
-/// The sum of a number over all resources. `of`: of the sections of one.
+/// The same with nothing in place of what the resource does not have: a packet process that serves resources has
+/// collections and no testers, buffers and caches, and these resources have no collections.
+inline OwnSections built_sections(const Config& c, std::int64_t resource) {
+  OwnSections out = own_sections(c, resource);
+  if (managers_of(c.topology) == 0) return out;
+  if (resource < ray_owners(c.topology)) {
+    out.collections.capacity = 0;
+    return out;
+  }
+  for (auto [kind, units] : out.testers.units) units.units = 0;
+  out.memory.shape_buffer_kib = out.memory.l1_kib = 0;
+  return out;
+}
+
+/// The sum of a number over all resources. `of`: of the sections of one, as it is built.
 template <class Of>
 std::int64_t sum_of_resources(const Config& c, const Of& of) {
-  if (!has_own(c.topology)) {
+  if (!has_own(c.topology) && managers_of(c.topology) == 0) {
     const OwnSections all = own_sections(c, 0);
     return c.topology.resources * of(all);
   }
   std::int64_t sum = 0;
-  for (std::int64_t r = 0; r < c.topology.resources; ++r) sum += of(own_sections(c, r));
+  for (std::int64_t r = 0; r < c.topology.resources; ++r) sum += of(built_sections(c, r));
   return sum;
 }
 

@@ -42,6 +42,12 @@ const Body* added_body(E value) {
   return added == nullptr ? nullptr : static_cast<const Body*>(added->body.get());
 }
 
+/// Tells whether a value is none of the table.
+template <class E>
+constexpr bool is_added(E value) {
+  return static_cast<std::size_t>(value) >= kEnumNames<E>.size();
+}
+
 /// Whose names count: those of this program, and those of the plugins of these files.
 using Origins = std::span<const std::string>;
 

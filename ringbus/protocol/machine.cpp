@@ -16,12 +16,13 @@ RayControlSettings control_settings(const Config& config, const accel::Accel& ac
       ray_control_settings(config.rays, config.collections, config.packets, config.bundles, tests, scene_size);
   settings.local |= !topology.has_packets();
   settings.share = share;
+  settings.manager_of = topology.manager_of();
   return settings;
 }
 
 std::vector<std::int64_t> slots_of_resources(const Config& config) {
   std::vector<std::int64_t> slots(static_cast<std::size_t>(config.topology.resources), config.rays.slots_per_resource);
-  for (std::size_t r = 0; r < slots.size() && has_own(config.topology); ++r)
+  for (std::size_t r = 0; r < slots.size(); ++r)
     slots[r] = own_sections(config, static_cast<std::int64_t>(r)).rays.slots_per_resource;
   return slots;
 }

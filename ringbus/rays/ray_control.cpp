@@ -14,7 +14,7 @@ RayControlSettings ray_control_settings(const RaysConfig& rays, const Collection
                                         const PacketsConfig& packets, const BundlesConfig& bundles,
                                         std::int32_t initial_tests, float scene_size) {
   const bool local = collections.home == Home::kLocal;
-  return {rays.placement, local, static_cast<std::size_t>(packets.rays), initial_tests, bundles, scene_size, {}};
+  return {rays.placement, local, static_cast<std::size_t>(packets.rays), initial_tests, bundles, scene_size, {}, {}};
 }
 
 RayControl::RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores)
@@ -30,7 +30,16 @@ RayControl::RayControl(const RayControlSettings& settings, std::span<const std::
       slots_(std::make_unique<SlotList[]>(stores.size())),
       inboxes_(std::make_unique<Inbox[]>(stores.size())) {
   free_all();
-  const std::size_t total = free_slots();
+  owners_.resize(settings.manager_of.empty() ? 1 : resources_);
+  for (std::uint32_t r = 0; r < resources_; ++r) {
+    const ResourceId manager(settings.manager_of.empty() ? 0 : settings.manager_of[r]);
+    if (settings.manager_of.empty() || manager.value != r)
+      owners_[manager.value].push_back(ResourceId(r));
+    else
+      managers_.push_back(manager);
+  }
+  std::size_t total = free_slots();
+  if (!managers_.empty()) total /= managers_.size();
   // Groups are placed whole where possible, but waiting for more than a quarter of the slots would idle the ring.
   if (settings.bundles.size > 0) builder_.emplace(settings.bundles, settings.scene_size);
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_issuing() : total) / 4);
@@ -86,6 +95,23 @@ ResourceId RayControl::emptiest() const {
   for (std::uint32_t i = 1; i < resources_; ++i) {
     const ResourceId r((turn_ + i) % resources_);
     if (free_slots(r) > free_slots(best)) best = r;
+  }
+  return best;
+}
+
+std::size_t RayControl::free_slots(const std::vector<ResourceId>& of) const {
+  std::size_t total = 0;
+  for (const ResourceId r : of) total += free_slots(r);
+  return total;
+}
+
+/// The packet process whose resources have most room; of several, that of the next turn.
+ResourceId RayControl::emptiest_manager() {
+  const std::size_t first = turn_++;
+  ResourceId best = managers_[first % managers_.size()];
+  for (std::size_t i = 1; i < managers_.size(); ++i) {
+    const ResourceId manager = managers_[(first + i) % managers_.size()];
+    if (free_slots(owners_[manager.value]) > free_slots(owners_[best.value])) best = manager;
   }
   return best;
 }
@@ -160,13 +186,14 @@ void RayControl::free(ResourceId resource, std::span<const std::uint32_t> slots)
   list.count.store(list.free.size(), std::memory_order_relaxed);
 }
 
-std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids) {
+std::size_t RayControl::place_spread(std::span<const RayRequest> rays, const std::vector<ResourceId>& owners,
+                                     std::vector<RayId>& ids) {
   if (rule_ != nullptr) return place_by_rule(rays, ids);
   std::size_t placed = 0;
   if (placement_ == Placement::kRoundRobin) {
     // One ray a resource in turn, except for full resources.
-    for (std::uint32_t refused = 0; placed < rays.size() && refused < resources_;) {
-      const bool took = load_some(next_resource(), rays.subspan(placed, 1), ids) == 1;
+    for (std::uint32_t refused = 0; placed < rays.size() && refused < owners.size();) {
+      const bool took = load_some(next_of(owners), rays.subspan(placed, 1), ids) == 1;
       refused = took ? 0 : refused + 1;
       placed += took;
     }
@@ -174,10 +201,10 @@ std::size_t RayControl::place_spread(std::span<const RayRequest> rays, std::vect
   }
   // Balanced: equal shares, each a run of neighbouring rays. The others take what full resources cannot.
   for (int pass = 0; pass < 2 && placed < rays.size(); ++pass) {
-    for (std::uint32_t i = 0; i < resources_ && placed < rays.size(); ++i) {
-      const std::size_t left = resources_ - i;
+    for (std::uint32_t i = 0; i < owners.size() && placed < rays.size(); ++i) {
+      const std::size_t left = owners.size() - i;
       const std::size_t share = pass == 0 ? (rays.size() - placed + left - 1) / left : rays.size() - placed;
-      placed += load_some(ResourceId((turn_ + i) % resources_), rays.subspan(placed, share), ids);
+      placed += load_some(owners[(turn_ + i) % owners.size()], rays.subspan(placed, share), ids);
     }
   }
   return placed;
@@ -230,7 +257,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
     const std::span<const RayRequest> next = rays.subspan(done, std::min(group_rays_, rays.size() - done));
     RayGroup group;
     std::size_t placed = next.size();
-    ResourceId issuer = next_issuer();
+    ResourceId issuer = managers_.empty() ? next_issuer() : emptiest_manager();
     if (rays_travel_) {
       if (!may_send(issuer)) break;
       group.rays.assign(next.begin(), next.end());
@@ -243,7 +270,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       if (local_ && placement_ == Placement::kBalanced) issuer = emptiest();
       if (local_ && rule_ != nullptr) issuer = chosen(next.front());
       if (local_ && rule_ != nullptr && free_slots(issuer) < std::min(next.size(), enough_slots_)) issuer = emptiest();
-      const std::size_t room = local_ ? free_slots(issuer) : free_slots();
+      const std::size_t room = local_ ? free_slots(issuer) : free_slots(owners(issuer));
       if (room < std::min(next.size(), enough_slots_)) {
         slot_waits_.fetch_add(1, std::memory_order_relaxed);
         // If resources take turns, the next one may have room.
@@ -252,7 +279,7 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       }
       if (!may_send(issuer)) break;
       group.ids.reserve(next.size());
-      placed = local_ ? load_some(issuer, next, group.ids) : place_spread(next, group.ids);
+      placed = local_ ? load_some(issuer, next, group.ids) : place_spread(next, owners(issuer), group.ids);
     }
     schedule_point();
     if (placed == 0) break;

@@ -33,8 +33,9 @@ struct RayControlSettings {
   std::size_t group_rays = 32;     ///< packets.rays
   std::int32_t initial_tests = 1;  ///< that a ray waits for at the root
   BundlesConfig bundles;
-  float scene_size = 1;  ///< scale of the distances between the origins of a bundle
-  RankShare share{};     ///< the part of the machine that this process plays
+  float scene_size = 1;                     ///< scale of the distances between the origins of a bundle
+  RankShare share{};                        ///< the part of the machine that this process plays
+  std::vector<std::uint32_t> manager_of{};  ///< by resource, as the plan of the topology
 };
 
 RayControlSettings ray_control_settings(const RaysConfig& rays, const CollectionsConfig& collections,
@@ -48,7 +49,8 @@ RayControlSettings ray_control_settings(const RaysConfig& rays, const Collection
 /// independent resources a whole group lives where it is issued. With bundles a group is as many bundles and single
 /// rays as a packet carries IDs, and each bundle has one owner. With first_taker and addressed placement the rays
 /// travel instead, and resources ask for slots as packets pass. With several ranks a rank's rays are issued by
-/// resources of its own arc, and go to slots that it leases from all resources. Any thread may call.
+/// resources of its own arc, and go to slots that it leases from all resources. Where packet processes serve resources,
+/// a group goes to the one whose resources have most room, and its rays to these. Any thread may call.
 class RayControl {
  public:
   /// `stores` by resource.
@@ -129,7 +131,8 @@ class RayControl {
   std::size_t place_bundles(std::span<const RayRequest> rays);
   std::size_t load_bundle(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t load_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
-  std::size_t place_spread(std::span<const RayRequest> rays, std::vector<RayId>& ids);
+  std::size_t place_spread(std::span<const RayRequest> rays, const std::vector<ResourceId>& owners,
+                           std::vector<RayId>& ids);
   bool may_send(ResourceId resource);
   void send(ResourceId resource, RayGroup&& group);
   ResourceId next_resource() {
@@ -141,6 +144,15 @@ class RayControl {
     return share_.alone() ? next_resource() : ResourceId(share_.arc_begin() + turn_++ % share_.arc_size());
   }
   ResourceId emptiest() const;
+  std::size_t free_slots(const std::vector<ResourceId>& of) const;
+  /// The resources that rays of a group of `issuer` may go to.
+  const std::vector<ResourceId>& owners(ResourceId issuer) const {
+    return owners_.size() == 1 ? owners_.front() : owners_[issuer.value];
+  }
+  ResourceId emptiest_manager();
+  ResourceId next_of(const std::vector<ResourceId>& owners) {
+    return owners_.size() == 1 ? next_resource() : owners[turn_++ % owners.size()];
+  }
   std::size_t place_by_rule(std::span<const RayRequest> rays, std::vector<RayId>& ids);
   ResourceId chosen(const RayRequest& ray);
 
@@ -153,6 +165,8 @@ class RayControl {
   std::size_t group_rays_, enough_slots_;
   std::int32_t initial_tests_;
   std::span<const std::unique_ptr<RayStore>> stores_;
+  std::vector<std::vector<ResourceId>> owners_;  // of each one's groups; a single entry: of all
+  std::vector<ResourceId> managers_;             // packet processes that serve resources
   std::unique_ptr<SlotList[]> slots_;
   std::unique_ptr<Inbox[]> inboxes_;
   std::atomic<std::uint64_t> slot_waits_{0}, slots_used_{0};

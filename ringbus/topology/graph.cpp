@@ -61,9 +61,14 @@ std::vector<ResourceId> nearest_round(const Graph& graph, const Routes& routes) 
   std::uint32_t at = 0;
   for (std::uint32_t i = 1; i < graph.resources; ++i) {
     left[at] = false;
-    std::pair best{std::numeric_limits<std::int64_t>::max(), 0u};
+    constexpr std::int64_t kFar = std::numeric_limits<std::int64_t>::max();
+    std::pair best{kFar, graph.resources};
     for (std::uint32_t to = 0; to < graph.resources; ++to) {
       if (!left[to]) continue;
+      if (!graph.packets_go(at, to)) {  // the round leads there all the same, and no packet
+        best = std::min(best, std::pair{kFar, to});
+        continue;
+      }
       std::int64_t cycles = 0;
       routes.for_each_link(at, to, [&](std::uint32_t link) {
         cycles += graph.links[link].latency_cycles + graph.nodes[graph.links[link].from].drawn->latency_cycles;
@@ -83,7 +88,8 @@ std::vector<std::uint32_t> there_and_back(const Graph& graph, const Routes& rout
                                           const std::vector<std::uint64_t>& places, std::uint64_t enough) {
   for (std::uint32_t i = 0; i < graph.links.size(); ++i) {
     const Graph::Link& link = graph.links[i];
-    if (link.from >= graph.resources || link.to >= graph.resources || routes.link(link.from, link.to) != i) continue;
+    if (link.from >= graph.resources || link.to >= graph.resources) continue;
+    if (!graph.packets_go(link.from, link.to) || routes.link(link.from, link.to) != i) continue;
     const std::uint32_t back = routes.link(link.to, link.from);
     if (back != Routes::kNone && graph.links[back].to == link.from && places[i] + places[back] <= enough)
       return {i, back};
@@ -101,7 +107,8 @@ class VisitJudge {
         routes_(routes),
         plan_(plan),
         each_(plan.packets_in_flight * (graph.lanes_meet() ? graph.lanes : 1)),
-        on_the_way_(each_ * graph.resources) {
+        issuers_(graph.issuers().size()),
+        on_the_way_(each_ * issuers_) {
     for (const Graph::Link& link : graph.links) places_.push_back(static_cast<std::uint64_t>(link.depth) + 1);
   }
 
@@ -113,9 +120,10 @@ class VisitJudge {
     if (circle.empty()) circle = smallest(true);
     if (keeps(circle)) return;
     if (config_.flow == Flow::kNone) {
-      plan_.verdict = {true, fmt::format("nothing bounds the packets on the way: {} resources may put {} each on links "
-                                         "of which a circle holds {} ({})",
-                                         graph_.resources, each_, held(circle), named(circle))};
+      plan_.verdict = {true,
+                       fmt::format("nothing bounds the packets on the way: {} may put {} each on links of which a "
+                                   "circle holds {} ({})",
+                                   who(), each_, held(circle), named(circle))};
       return;
     }
     // Resources may have more places; those of routers are given.
@@ -123,13 +131,14 @@ class VisitJudge {
     const std::vector<std::uint32_t> of_routers = smallest(false);
     if (of_routers.empty())
       plan_.verdict = {false,
-                       fmt::format("room: a circle of links holds {} packets ({}), and {} resources put up to {} "
-                                   "each on the way, so every resource has egress places for all of them",
-                                   held(circle), named(circle), graph_.resources, each_)};
+                       fmt::format("room: a circle of links holds {} packets ({}), and {} put up to {} each on the "
+                                   "way, so every resource has egress places for all of them",
+                                   held(circle), named(circle), who(), each_)};
     else if (!keeps(of_routers))
-      plan_.verdict = {true, fmt::format("a circle of links holds {} packets ({}), and {} resources put up to {} each "
-                                         "on the way; routers with buffers: auto have room for all of them",
-                                         held(of_routers), named(of_routers), graph_.resources, each_)};
+      plan_.verdict = {true,
+                       fmt::format("a circle of links holds {} packets ({}), and {} put up to {} each on the way; "
+                                   "routers with buffers: auto have room for all of them",
+                                   held(of_routers), named(of_routers), who(), each_)};
   }
 
  private:
@@ -151,6 +160,10 @@ class VisitJudge {
     for (const std::uint32_t link : circle) sum += places_[link];
     return sum;
   }
+  /// Those who issue packets.
+  std::string who() const {
+    return fmt::format("{} {}", issuers_, graph_.manager_of.empty() ? "resources" : "packet processes");
+  }
   std::string named(const std::vector<std::uint32_t>& circle) const { return circle_text(graph_, circle); }
   /// The links of each lane are one ring: as many as nodes, all of which are resources that reach one another.
   bool is_rings() const {
@@ -164,10 +177,9 @@ class VisitJudge {
     if (circle.empty())
       plan_.verdict = {false, "no circle: links that wait for one another end at nodes with room for all packets"};
     else if (config_.flow == Flow::kCredits && on_the_way_ < held(circle))
-      plan_.verdict = {false,
-                       fmt::format("credits: {} resources with at most {} packets each put {} packets on the way, "
-                                   "and the smallest circle of links holds {} ({}), so one place is always free",
-                                   graph_.resources, each_, on_the_way_, held(circle), named(circle))};
+      plan_.verdict = {false, fmt::format("credits: {} with at most {} packets each put {} packets on the way, and the "
+                                          "smallest circle of links holds {} ({}), so one place is always free",
+                                          who(), each_, on_the_way_, held(circle), named(circle))};
     else if (config_.flow == Flow::kBubble && is_rings() &&
              std::ranges::all_of(graph_.links, [](const Graph::Link& link) { return link.depth >= 2; }))
       plan_.verdict = {false,
@@ -184,6 +196,7 @@ class VisitJudge {
   const std::vector<Routes>& routes_;  // by lane
   TopologyPlan& plan_;
   std::uint64_t each_;  // packets of a resource that may be in a circle
+  std::size_t issuers_;
   std::uint64_t on_the_way_;
   std::vector<std::uint64_t> places_;  // by link, with one to leave its first node
 };
@@ -270,6 +283,7 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
     plan.hub_places.push_back(static_cast<std::uint32_t>(graph.nodes[i].drawn->buffers.value_or(0)));
   }
   plan.packets_in_flight = packets_in_flight(config);
+  plan.manager_of = graph.manager_of;
   if (graph.bus()) {
     plan_the_bus(config, plan);
     return plan;

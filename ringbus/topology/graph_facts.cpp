@@ -46,7 +46,25 @@ namespace {
 template <class Body>
 void for_all_pairs(const Graph& graph, const Body& body) {
   for (std::uint32_t from = 0; from < graph.resources; ++from)
-    for (std::uint32_t to = 0; to < graph.resources; ++to) body(from, to);
+    for (std::uint32_t to = 0; to < graph.resources; ++to)
+      if (graph.packets_go(from, to)) body(from, to);
+}
+
+/// "packet processes: a serves r[0], r[1]; b serves r[2], r[3]"
+std::string served_text(const Graph& graph) {
+  if (graph.manager_of.empty()) return "";
+  constexpr std::size_t kShown = 8;
+  std::string out = "packet processes: ";
+  for (const std::uint32_t manager : graph.issuers()) {
+    out += fmt::format("{}{} serves ", out.ends_with(": ") ? "" : "; ", graph.nodes[manager].name);
+    std::size_t served = 0;
+    for (std::uint32_t r = 0; r < graph.resources; ++r) {
+      if (r == manager || graph.manager_of[r] != manager) continue;
+      if (served++ < kShown) out += (served > 1 ? ", " : "") + graph.nodes[r].name;
+    }
+    if (served > kShown) out += fmt::format(" and {} more", served - kShown);
+  }
+  return out + "\n";
 }
 
 }  // namespace
@@ -57,7 +75,8 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   facts.resources = graph.resources;
   facts.routers = graph.of_kind(GraphNodeKind::kRouter).size();
   facts.links = graph.links.size();
-  facts.ways = graph.lanes * graph.resources * graph.resources;
+  for_all_pairs(graph, [&](std::uint32_t, std::uint32_t) { facts.ways += graph.lanes; });
+  facts.served = served_text(graph);
   const auto bus = graph.bus();
   if (bus) facts.bus = graph.nodes[*bus].name;
   std::vector<std::uint64_t> pairs(graph.links.size());

@@ -29,6 +29,7 @@ std::string circle_text(const config::Graph& graph, const std::vector<std::uint3
 struct GraphFacts {
   std::size_t resources = 0, routers = 0, links = 0, ways = 0;
   std::string bus;         ///< that all packets cross; empty without one
+  std::string served;      ///< a line that says which packet process serves which resources; empty without such
   double mean_nodes = 0;   ///< on a way, first and last included
   double mean_cycles = 0;  ///< that links and the nodes before them take
   std::string longest_from, longest_to;

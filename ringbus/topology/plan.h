@@ -67,6 +67,9 @@ struct TopologyPlan {
   bool room_for_all = false;
   std::vector<std::uint32_t> hub_places;  ///< egress places of hubs for each port; 0, or empty: room for all packets
   std::vector<Hub> hubs;
+  /// By resource: the packet process that issues the packets of its rays, itself for one of these, which has no rays.
+  /// Empty: every resource issues packets, of whatever rays.
+  std::vector<std::uint32_t> manager_of;
   /// Packets of its own that a resource may have under way in each direction.
   std::uint32_t packets_in_flight = 0;
   DeadlockVerdict verdict;

@@ -72,6 +72,8 @@ class Topology {
   bool carries_traffic() const { return properties_.carries_traffic; }
   std::uint32_t packets_in_flight() const { return plan_.packets_in_flight; }
   std::uint16_t ack_direction(std::size_t direction) const { return plan_.ack_directions[direction]; }
+  /// As in the plan.
+  const std::vector<std::uint32_t>& manager_of() const { return plan_.manager_of; }
   const DeadlockVerdict& verdict() const { return plan_.verdict; }
 
   /// Links that a packet crosses on its way round a ring; 0 when it need not travel.

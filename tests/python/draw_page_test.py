@@ -10,7 +10,7 @@ class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
         page = text_of("guides/draw-a-machine.md")
         texts = commands("guides/draw-a-machine.md")
-        self.assertEqual(len(texts), 13)
+        self.assertEqual(len(texts), 14)
         with reader() as user:
             printed = user.all(texts)
         # The drawing on the page is what the program prints.
@@ -28,6 +28,7 @@ class DrawPage(unittest.TestCase):
         self.assertIn("# deadlock: impossible. virtual channels: a circle of ", printed[7])
         self.assertTrue(any("# halves: " in text and "# wires: " in text for text in printed))
         self.assertTrue(any("A  unlike" in text and "hits           the same" in text for text in printed))
+        self.assertTrue(any("# packet processes: unit[0] serves r[0], r[1]" in text for text in printed))
         self.assertTrue(any(text.startswith("# busiest: bus") for text in printed))
 
 

@@ -27,8 +27,8 @@ inline constexpr auto kEnumNames<GraphNodeKind> = [] {
                                {kShading, "shading"}});
 }();
 
-/// Tells whether nodes of the kind own rays, and packets stop there.
-constexpr bool owns_rays(GraphNodeKind kind) {
+/// Tells whether packets stop at nodes of the kind: where rays are, or their collections.
+constexpr bool takes_packets(GraphNodeKind kind) {
   return kind == GraphNodeKind::kResource || kind == GraphNodeKind::kPacketProcess;
 }
 
@@ -57,13 +57,16 @@ struct GraphPoint {
   friend bool operator==(const GraphPoint&, const GraphPoint&) = default;
 };
 
-/// The rule by which ways through a graph are found.
+/// The rule by which ways through a graph are found. Plugins add others (core/types/router_rule.h).
 enum class Routing { kShortest, kUpDown, kGiven };
 template <>
 inline constexpr auto kEnumNames<Routing> = [] {
   using enum Routing;
   return names<Routing>({{kShortest, "shortest"}, {kUpDown, "up_down"}, {kGiven, "given"}});
 }();
+
+template <>
+inline constexpr std::string_view kAddedAs<Routing> = "router";
 
 /// The order in which a packet visits the owners of its rays.
 enum class Tour { kNames, kNearest };
@@ -102,7 +105,7 @@ struct GraphNode {
   std::int64_t latency_cycles = 0;
   std::optional<std::int64_t> buffers;
   Forward forward = Forward::kHead;
-  std::string serves;  ///< empty: all resources
+  std::string serves;  ///< empty: of a cache, all resources; of a packet_process, its own cells or testers
   std::optional<std::int64_t> interleave_bytes;
   std::int64_t credit_cycles = 0, claim_cycles = 0;
   GraphPoint at, step;
@@ -182,9 +185,11 @@ void describe(V& v, GraphNode& c) {
   v.field("name", c.name, "", "The name of the node, or of the group.");
   v.choice(
       "kind", c.kind,
-      "A compute resource; a packet_process, which is a unit of a central machine with its test cells or testers; a "
-      "router, which only passes packets on; a bus, one medium that all resources hear; a cache, an L2 or a bank of "
-      "one; a memory behind the caches; or shading, with ray control.");
+      "A compute resource; a packet_process, which is a unit of a central machine with its test cells or testers, or "
+      "keeps the collections of the resources that it serves; a router, which only passes packets on; a bus, one "
+      "medium "
+      "that all resources hear; a cache, an L2 or a bank of one; a memory behind the caches; or shading, with ray "
+      "control.");
   v.field_or_auto("count", c.count, IntRange{1, kMaxResources}, "nodes",
                   "The number of nodes of a group, called name[0] and on; auto is one node of that very name.");
   v.field("latency_cycles", c.latency_cycles, IntRange{0, 1'000'000}, "cycles",
@@ -194,7 +199,8 @@ void describe(V& v, GraphNode& c) {
   v.choice("forward", c.forward,
            "A router sends a packet on when its head has come, if the next link is as wide, or the whole packet.");
   v.field("serves", c.serves, "",
-          "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn.");
+          "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn. Or "
+          "the resources whose rays a packet_process collects: of a group, each serves an equal run of them.");
   v.field_or_auto("interleave_bytes", c.interleave_bytes, IntRange{16, 1 << 20}, "bytes",
                   "The bytes that a cache of a group, or a memory, holds before the next one's turn; auto is a line.");
   v.field("credit_cycles", c.credit_cycles, IntRange{0, 1'000'000}, "cycles",

@@ -131,10 +131,29 @@ struct TopologyConfig {
   ChannelRule channels = ChannelRule::kAny;
 };
 
+/// A packet_process that keeps the collections of resources; they own the rays and the testers, and it has none.
+inline bool is_manager(const GraphNode& node) {
+  return node.kind == GraphNodeKind::kPacketProcess && !node.serves.empty();
+}
+
 /// A machine of units that hold rays, collections and all testers (US 9633468): the shape, or a graph of such units.
 inline bool is_central(const TopologyConfig& c) {
   if (c.shape != TopologyShape::kGraph) return c.shape == TopologyShape::kCentral;
-  return std::ranges::any_of(c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kPacketProcess; });
+  return std::ranges::any_of(
+      c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kPacketProcess && !is_manager(node); });
+}
+
+/// The packet processes of a graph that keep the collections of resources (US 9633468 with more than one unit).
+inline std::int64_t managers_of(const TopologyConfig& c) {
+  std::int64_t sum = 0;
+  for (const GraphNode& node : c.nodes)
+    if (c.shape == TopologyShape::kGraph && is_manager(node)) sum += node.count.value_or(1);
+  return sum;
+}
+
+/// The resources that own rays, which have the first numbers; the others are packet processes.
+inline std::int64_t ray_owners(const TopologyConfig& c) {
+  return c.resources - managers_of(c);
 }
 
 /// A bus is the network that packets travel: the shape, or a graph around one.
@@ -239,7 +258,7 @@ void describe(V& v, TopologyConfig& c) {
   v.list("links", c.links, "The links of a graph, one by one or by pattern.");
   v.choice("routes", c.routes,
            "The ways through a graph: the shortest by the latency of links; up_down, which first go up a tree and then "
-           "down; or given, and the shortest where `ways` say nothing.");
+           "down; given, and the shortest where `ways` say nothing; or those of a plugin's router.");
   v.field("root", c.root, "", "The node at the top for up_down; without it, the one that is nearest to all others.");
   v.list("ways", c.ways, "The ways that are given.");
   v.choice("tour", c.tour,

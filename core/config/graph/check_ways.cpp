@@ -10,6 +10,7 @@
 
 #include "core/config/graph/graph.h"
 #include "core/config/graph/routes.h"
+#include "core/types/added_names.h"
 
 namespace carousel::config {
 
@@ -24,7 +25,9 @@ std::optional<GraphIssue> fault_of(const Graph& graph, std::size_t lane, const R
   for (std::size_t links = 0; at != to; ++links) {
     const std::uint32_t link = routes.link(at, to);
     if (link == Routes::kNone) {
-      const std::string_view rule = graph.routing == Routing::kUpDown ? " that goes up and then down" : "";
+      const std::string rule = graph.routing == Routing::kUpDown ? " that goes up and then down"
+                               : is_added(graph.routing)         ? fmt::format(" of {}", enum_name(graph.routing))
+                                                                 : "";
       const std::string where = graph.lanes > 1 ? fmt::format(" in lane {}", lane) : "";
       return GraphIssue{"topology.links",
                         fmt::format("there is no way{}{} from {} to {}; expected links that lead there", rule, where,
@@ -41,6 +44,11 @@ std::optional<GraphIssue> fault_of(const Graph& graph, std::size_t lane, const R
                         fmt::format("a packet from {0} for {1} never comes there: it goes round past {2}; expected a "
                                     "way that ends",
                                     graph.nodes[from].name, graph.nodes[to].name, graph.nodes[at].name)};
+    if (is_added(graph.routing))
+      return GraphIssue{"topology.routes", fmt::format("{} sends packets from {} for {} round in circles, past {}; "
+                                                       "expected a router whose ways end",
+                                                       enum_name(graph.routing), graph.nodes[from].name,
+                                                       graph.nodes[to].name, graph.nodes[at].name)};
   }
   return std::nullopt;
 }
@@ -120,11 +128,13 @@ void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
   for (std::size_t lane = 0; lane < packets.lanes; ++lane) {
     const Routes routes(packets, lane);
     for (std::uint32_t from = 0; from < graph.resources; ++from)
-      for (std::uint32_t to = 0; to < graph.resources; ++to)
+      for (std::uint32_t to = 0; to < graph.resources; ++to) {
+        if (!graph.packets_go(from, to)) continue;
         if (std::optional<GraphIssue> fault = fault_of(packets, lane, routes, from, to)) {
           issues.push_back(std::move(*fault));
           return;  // one names the gap; there may be thousands
         }
+      }
   }
 }
 

@@ -53,6 +53,16 @@ class PartFinder {
     std::iota(out.begin(), out.end(), 0u);
     return out;
   }
+  /// A packet process that serves resources reads no shapes: these do.
+  bool asks(std::uint32_t resource) const {
+    return graph_.manager_of.empty() || graph_.manager_of[resource] != resource;
+  }
+  Nodes asking() const {
+    Nodes out;
+    for (std::uint32_t r = 0; r < graph_.resources; ++r)
+      if (asks(r)) out.push_back(r);
+    return out;
+  }
 
   std::int64_t interleave(std::size_t entry) {
     const std::int64_t bytes = config_.nodes[entry].interleave_bytes.value_or(line_bytes_);
@@ -76,7 +86,7 @@ class PartFinder {
     for (std::size_t group = 0; group < parts_.caches.size(); ++group) serve(group);
     if (issues_.size() > before) return;  // the resources that ask nobody are those
     bool all = true;
-    for (std::uint32_t r = 0; r < graph_.resources; ++r) {
+    for (const std::uint32_t r : asking()) {
       if (parts_.caches_of[r] != kNone) continue;
       if (all)
         issue(
@@ -85,10 +95,13 @@ class PartFinder {
       all = false;
     }
     if (!all) return;
+    // Its port, which nothing uses, is at a cache of its resources.
+    for (std::uint32_t r = graph_.resources; r-- > 0;)
+      if (asks(r) && !graph_.manager_of.empty()) parts_.caches_of[graph_.manager_of[r]] = parts_.caches_of[r];
     const Graph shapes = graph_.only(Carried::kShapes);
     for (std::size_t group = 0; group < parts_.caches.size(); ++group) {
       Nodes clients;
-      for (std::uint32_t r = 0; r < graph_.resources; ++r)
+      for (const std::uint32_t r : asking())
         if (parts_.caches_of[r] == group) clients.push_back(r);
       if (!there_and_back(shapes, Carried::kShapes, clients, parts_.caches[group].nodes)) return;
     }
@@ -101,12 +114,17 @@ class PartFinder {
     Nodes served;
     std::string error;
     if (pattern.empty())
-      served = all_resources();
+      served = asking();
     else if (served = graph_.names.find(pattern, error); served.empty())
       return issue(node_key(entry, ".serves"), std::move(error));
     for (const std::uint32_t node : served) {
       if (node >= graph_.resources)
         return issue(node_key(entry, ".serves"), fmt::format("expected resources, found {}", name(node)));
+      if (!asks(node))
+        return issue(node_key(entry, ".serves"),
+                     fmt::format("the resources that a packet_process serves read their shapes themselves; expected "
+                                 "these, found {}",
+                                 name(node)));
       if (parts_.caches_of[node] != kNone && parts_.caches_of[node] != group)
         return issue(node_key(entry, pattern.empty() ? ".name" : ".serves"),
                      fmt::format("{} asks {} already; expected one group of caches for each resource", name(node),

@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/served.h"
+
 namespace carousel::config {
 
 namespace {
@@ -29,13 +31,14 @@ class Drawing {
     }
     for (const bool owners : {true, false}) {
       for (const auto& [kind, name] : kEnumNames<GraphNodeKind>)
-        if (owns_rays(kind) == owners) add_nodes(kind);
+        if (takes_packets(kind) == owners) add_nodes(kind);
       if (owners) graph_.resources = static_cast<std::uint32_t>(graph_.nodes.size());
     }
     if (graph_.nodes.size() > kMaxDrawn) {
       issue("topology.nodes", fmt::format("expected at most {} nodes, found {}", kMaxDrawn, graph_.nodes.size()));
       return {};
     }
+    if (managers_of(config_) > 0) find_served(config_, graph_, issues_);
     for (entry_ = 0; entry_ < config_.links.size(); ++entry_) {
       const GraphLink& link = config_.links[entry_];
       const bool side_by_side = link.lane || link.lanes > 1;
@@ -324,7 +327,7 @@ bool Graph::lanes_meet() const {
 std::int64_t drawn_resources(const TopologyConfig& config) {
   std::int64_t sum = 0;
   for (const GraphNode& node : config.nodes)
-    if (owns_rays(node.kind)) sum += node.count.value_or(1);
+    if (takes_packets(node.kind)) sum += node.count.value_or(1);
   return sum;
 }
 

@@ -37,7 +37,7 @@ std::vector<std::uint32_t> named_resources(const TopologyConfig& config, const s
   NodeNames names;
   std::uint32_t resources = 0;
   for (const GraphNode& node : config.nodes)
-    if (owns_rays(node.kind) && names.add(node.name, resources, node.count))
+    if (takes_packets(node.kind) && names.add(node.name, resources, node.count))
       resources += static_cast<std::uint32_t>(node.count.value_or(1));
   return names.find(pattern, error);
 }

@@ -17,7 +17,7 @@ namespace {
 /// The keys of a node that its kind has.
 void check_node(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
   const bool bus = node.kind == GraphNodeKind::kBus;
-  if (bus || owns_rays(node.kind)) {
+  if (bus || takes_packets(node.kind)) {
     const std::string_view otherwise = bus ? "packets wait for a bus at the resources, and other nodes have this key"
                                            : "a resource has places for its packets in test, and other nodes this key";
     if (node.buffers) breach(key + ".buffers", fmt::format("{}; expected auto, found {}", otherwise, *node.buffers));
@@ -26,12 +26,9 @@ void check_node(const GraphNode& node, const std::string& key, const RuleBreach&
   }
   if (bus && node.count.value_or(1) > 1)
     breach(key + ".count", fmt::format("all packets cross the same bus; expected one, found {}", *node.count));
-  if (!node.serves.empty() && node.kind != GraphNodeKind::kCache)
-    breach(key + ".serves", fmt::format("{}; expected none at a {}, found '{}'",
-                                        node.kind == GraphNodeKind::kPacketProcess
-                                            ? "it serves its own cells or testers, which are testers.simd.lanes or "
-                                              "testers.distributor.testers"
-                                            : "resources ask caches",
+  if (!node.serves.empty() && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kPacketProcess)
+    breach(key + ".serves", fmt::format("resources ask caches, and packet processes collect their rays; expected none "
+                                        "at a {}, found '{}'",
                                         enum_name(node.kind), node.serves));
   if (node.interleave_bytes && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kMemory)
     breach(key + ".interleave_bytes", fmt::format("caches and memories hold lines; expected auto at a {}, found {}",
@@ -54,15 +51,78 @@ void check_node(const GraphNode& node, const std::string& key, const RuleBreach&
     breach(key + ".at", "the nodes of a group cannot all stand there; expected step besides");
 }
 
+/// Packet processes that serve resources hold collections alone: they have no rays, testers and shapes, and the
+/// resources have no collections.
+void check_managers(const Config& config, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  const bool cycle = config.engine.kind == EngineKind::kCycle;
+  const auto refuse = [&](bool wrong, std::string_view key, std::string_view message) {
+    if (wrong) breach(std::string(key), std::string(message));
+  };
+  const auto value = [&](bool wrong, std::string_view key, std::string_view why, std::string_view expected,
+                         std::string_view found) {
+    if (wrong) breach(std::string(key), fmt::format("{}; expected {}, found {}", why, expected, found));
+  };
+  const auto kind_of = [&](GraphNodeKind kind) {
+    return std::ranges::any_of(c.nodes, [&](const GraphNode& node) { return node.kind == kind; });
+  };
+  refuse(
+      is_central(c), "topology.nodes",
+      "each packet_process serves resources, or each has its own cells; expected `serves` at all of them, or at none");
+  refuse(kind_of(GraphNodeKind::kBus), "topology.nodes",
+         "a packet_process that serves resources is not on a bus yet; expected routers or direct links");
+  refuse(
+      cycle && !kind_of(GraphNodeKind::kCache), "topology.nodes",
+      "the resources that a packet_process serves read their shapes from memories that are drawn; expected a node of "
+      "the kind cache");
+  refuse(config.workload.kind == WorkloadConfig::Kind::kTraffic, "topology.nodes",
+         "synthetic traffic has no collections; expected no packet_process");
+  value(c.visit != Visit::kOwners, "topology.visit", "a packet visits resources of its packet_process alone", "owners",
+        enum_name(c.visit));
+  value(config.collections.home != Home::kIssuer, "collections.home",
+        "the packet_process keeps the collections of its resources", "issuer", enum_name(config.collections.home));
+  value(config.collections.when_full == WhenFull::kSpill && cycle, "collections.when_full",
+        "a packet_process has no memory to spill to yet", "reserve", "spill");
+  const Placement placement = config.rays.placement;
+  value(placement != Placement::kBalanced && placement != Placement::kRoundRobin, "rays.placement",
+        "new rays go to the resources of one packet_process", "balanced or round_robin", enum_name(placement));
+  value(config.bundles.size > 0, "bundles.size", "bundles are placed among all resources yet", "0",
+        std::to_string(config.bundles.size));
+  value(config.packets.carry == PacketCarry::kData, "packets.carry",
+        "a packet_process reads no shapes: the resources do, each from its memory", "reference", "data");
+  refuse(config.shading.idle_resources_shade, "shading.idle_resources_shade",
+         "a packet_process is no resource that shades; expected false, found true");
+  refuse(config.faults.resource.kind != FaultsConfig::Resource::Kind::kNone, "faults.resource.kind",
+         "resources that a packet_process serves have no faults yet; expected none");
+  for (std::size_t i = 0; i < c.overrides.size(); ++i) {
+    const ResourceOverride& one = c.overrides[i];
+    for (std::int64_t r = ray_owners(c); r < c.resources; ++r) {
+      if (!one.is_about(r)) continue;
+      const std::string place = fmt::format("topology.overrides.{}", i);
+      refuse(one.testers != config.testers, place + ".testers",
+             "a packet_process that serves resources has no testers");
+      for_each_own_key([&](const auto& row) {
+        const std::string_view path = row.path;
+        if (one.own.*row.own && !path.starts_with("collections.") && !path.starts_with("packets."))
+          breach(fmt::format("{}.{}", place, row.name),
+                 fmt::format("a packet_process that serves resources has collections alone; expected no {}", row.name));
+      });
+      break;
+    }
+  }
+}
+
 /// Units of a central machine are all alike, and a distributor knows one.
 void check_packet_processes(const Config& config, const RuleBreach& breach) {
   const std::vector<GraphNode>& nodes = config.topology.nodes;
+  if (managers_of(config.topology) > 0) return check_managers(config, breach);
   if (!is_central(config.topology)) return;
   const auto other =
       std::ranges::find_if(nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kResource; });
   if (other != nodes.end())
     breach(fmt::format("topology.nodes.{}.kind", other - nodes.begin()),
-           "beside a packet_process all nodes that own rays are such units; expected packet_process, found resource");
+           "beside a packet_process with cells of its own all nodes that own rays are such units; expected "
+           "packet_process, or `serves` at the packet_process; found resource");
   if (has_distributor(config) && drawn_resources(config.topology) > 1)
     breach("topology.form", fmt::format("a distributor stands in a machine of one unit yet; expected cells, or one "
                                         "packet_process; found distributor and {}",
@@ -162,10 +222,12 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   check_packet_processes(config, breach);
   check_lanes(config, breach);
   for (std::size_t i = 0; i < c.nodes.size() && config.engine.kind == EngineKind::kNative; ++i)
-    if (const GraphNodeKind kind = c.nodes[i].kind; kind != GraphNodeKind::kResource && kind != GraphNodeKind::kRouter)
+    if (const GraphNodeKind kind = c.nodes[i].kind;
+        kind != GraphNodeKind::kResource && kind != GraphNodeKind::kRouter && !is_manager(c.nodes[i]))
       breach(
           fmt::format("topology.nodes.{}.kind", i),
-          fmt::format("the native engine draws resources and routers; expected these, or engine.kind: cycle; found {}",
+          fmt::format("the native engine draws resources, routers and packet processes that serve resources; expected "
+                      "these, or engine.kind: cycle; found {}",
                       enum_name(kind)));
   const std::int64_t resources = drawn_resources(c);
   if (resources == 0) return breach("topology.nodes", "expected a resource at least, such as {name: r, count: 8}");

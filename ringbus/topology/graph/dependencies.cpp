@@ -99,7 +99,7 @@ Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes
   std::vector<std::vector<std::uint32_t>> come(n), leave(n);
   for (std::uint32_t from = 0; from < n; ++from)
     for (std::uint32_t to = 0; to < n; ++to) {
-      if (from == to || (!round.empty() && to != round[from].value)) continue;
+      if (from == to || !graph.packets_go(from, to) || (!round.empty() && to != round[from].value)) continue;
       add_way(ways, routes, from, to);
       std::uint32_t first = Routes::kNone, last = Routes::kNone;
       routes.for_each_link(from, to, [&](std::uint32_t link) {

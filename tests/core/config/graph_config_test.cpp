@@ -163,16 +163,18 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"OtherUnits",
                   "topology: {shape: graph, nodes: [{name: c, kind: packet_process}, {name: a}], links: [{ring: 'a, "
                   "c'}]}\ntesters: {simd: {lanes: 8}}\n",
-                  "topology.nodes.1.kind: beside a packet_process all nodes that own rays are such units"},
+                  "topology.nodes.1.kind: beside a packet_process with cells of its own all nodes that own rays are "
+                  "such units"},
         BadConfig{"TwoDistributors",
                   "topology: {shape: graph, form: distributor, nodes: [{name: c, kind: packet_process, count: 2}],\n"
                   "  links: [{ring: 'c[*]'}]}\n",
                   "topology.form: a distributor stands in a machine of one unit yet"},
-        BadConfig{"UnitThatServes",
-                  "topology: {shape: graph, nodes: [{name: c, kind: packet_process, serves: c}], links: []}\n"
-                  "testers: {simd: {lanes: 8}}\n",
-                  "test.yaml:3:74: topology.nodes.0.serves: it serves its own cells or testers, which are "
-                  "testers.simd.lanes"},
+        BadConfig{
+            "UnitThatServesItself",
+            "topology: {shape: graph, nodes: [{name: c, kind: packet_process, serves: c}], links: []}\n"
+            "testers: {simd: {lanes: 8}}\n",
+            "test.yaml:3:74: topology.nodes.0.serves: a packet_process keeps the collections of resources; expected "
+            "such nodes, found c"},
         BadConfig{"SameLane",
                   "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]', lanes: 2},\n"
                   "  {from: 'r[0]', to: 'r[1]', lane: 1}]}\n",

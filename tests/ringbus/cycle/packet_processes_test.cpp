@@ -1,0 +1,105 @@
+// Packet processes that serve resources (US 9633468 with several central units): the hits of every machine, rays and
+// tests at resources, collections at packet processes, and a verdict on deadlock that counts those who issue packets.
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "ringbus/topology/graph_facts.h"
+#include "tests/ringbus/support/timed_machine.h"
+
+namespace carousel::ringbus::packet_processes_test {
+namespace {
+
+using testing::HasSubstr;
+
+/// Two packet processes, each with three resources and a cache of their own.
+const std::string kRays = "rays: {slots_per_resource: 32}\npackets: {rays: 8}\ncollections: {ready: 8}\n";
+const std::string kNodes =
+    "topology:\n  shape: graph\n  nodes:\n    - {name: r, count: 6}\n"
+    "    - {name: p, kind: packet_process, count: 2, serves: 'r[*]'}\n";
+const std::string kCaches =
+    "    - {name: l2_a, kind: cache, serves: 'r[0..2]'}\n    - {name: l2_b, kind: cache, serves: 'r[3..5]'}\n";
+const std::string kLinks =
+    "  links:\n    - {from: 'r[0..2]', to: 'p[0]', both: true}\n"
+    "    - {ring: 'r[3..5], p[1]'}\n";
+const std::string kShapes =
+    "    - {from: 'r[0..2]', to: l2_a, both: true, carries: [shapes]}\n"
+    "    - {from: 'r[3..5]', to: l2_b, both: true, carries: [shapes]}\n";
+const std::string kMachine = kRays + kNodes + kCaches + kLinks + kShapes;
+
+class PacketProcesses : public testing::Test {
+ protected:
+  TestScene scene_{builtin_scene(BuiltinScene::kCornell, 0, 0), 400, 2};
+};
+
+TEST_F(PacketProcesses, FindTheSameHits) {
+  for (const char* set :
+       {"topology.tour=names", "topology.tour=nearest", "topology.flow=bubble", "topology.link.depth=1",
+        "collections.traversal=ordered", "collections.traversal=treelet", "packets.shapes=single",
+        "bvh.treelets.bytes=4096", "testers.own_rays=after", "testers.any_hit=shader", "rays.placement=round_robin",
+        "memory.l1_kib=4", "packets.results=message", "rays.query.nearest=2", "testers.window=4"}) {
+    SCOPED_TRACE(set);
+    for (const std::size_t threads : {1u, 3u}) run_text(scene_, kMachine, {set}, threads);
+  }
+}
+
+TEST_F(PacketProcesses, AreTheSameMachineInTheNativeEngine) {
+  for (const std::size_t threads : {1u, 4u}) {
+    Cell cell;
+    cell.config =
+        load_config({"scene: {builtin: cornell}\nengine: {kind: native}\n" + kRays + kNodes + kLinks, "m.yaml"}).config;
+    cell.threads = threads;
+    EXPECT_EQ(run_cell(scene_, cell).fault, "");
+  }
+}
+
+TEST_F(PacketProcesses, KeepTheCollectionsAndNoRays) {
+  const Outcome out = run_text(scene_, kMachine);
+  ASSERT_EQ(out.result.resources.size(), 8u);
+  for (std::size_t r = 0; r < 8; ++r) {
+    SCOPED_TRACE(r);
+    const ResourceStatistics& one = out.result.resources[r];
+    const bool manager = r >= 6;
+    EXPECT_EQ(one.packets_issued > 0, manager);
+    EXPECT_EQ(one.rays_admitted > 0, manager);
+    EXPECT_EQ(one.rays_completed > 0, !manager);
+    EXPECT_EQ(one.local_rays > 0, !manager);
+    EXPECT_EQ(out.result.collections[r].memberships_peak > 0, manager);
+  }
+}
+
+// The bound of credits is that of those who issue: two with 4 packets each, where eight would be too many.
+TEST_F(PacketProcesses, BoundThePacketsOnTheWay) {
+  const Config config = load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\n" + kMachine, "m.yaml"},
+                                    std::vector<std::string>{"topology.link.depth=4"})
+                            .config;
+  const DeadlockVerdict verdict = deadlock_verdict(config);
+  EXPECT_FALSE(verdict.can_deadlock);
+  EXPECT_THAT(verdict.rule,
+              HasSubstr("credits: 2 packet processes with at most 4 packets each put 8 packets on the way"));
+  const GraphFacts facts = graph_facts(config.topology);
+  EXPECT_EQ(facts.ways, 2u * 4 * 4);
+  EXPECT_EQ(facts.served, "packet processes: p[0] serves r[0], r[1], r[2]; p[1] serves r[3], r[4], r[5]\n");
+}
+
+// One ray, one resource and its packet process: each packet crosses the link there and back.
+TEST_F(PacketProcesses, ALinkIsPaidThereAndBack) {
+  const auto cycles = [&](const char* latency) {
+    return cycles_of(scene_,
+                     "rays: {slots_per_resource: 1}\npackets: {rays: 1}\ntopology:\n  shape: graph\n  nodes: "
+                     "[{name: r}, {name: p, kind: packet_process, serves: r}, {name: l2, kind: cache}]\n"
+                     "  link: {latency_cycles: 4}\n  links:\n    - {from: r, to: p, both: true, "
+                     "latency_cycles: " +
+                         std::string(latency) + "}\n    - {from: r, to: l2, both: true, carries: [shapes]}\n");
+  };
+  const std::uint64_t near = cycles("10"), far = cycles("20"), farther = cycles("30");
+  EXPECT_GT(far, near);
+  // One ray at a time, and each of its packets waits for the one before: equal steps.
+  EXPECT_EQ(farther - far, far - near);
+  EXPECT_EQ((far - near) % 20, 0u);  // ten cycles there and ten back, for each packet
+}
+
+}  // namespace
+}  // namespace carousel::ringbus::packet_processes_test
