@@ -153,6 +153,9 @@ inline constexpr Condition kUpdates{
 inline constexpr Condition kPackets{[](const C& c, const S&) { return exchanges_packets(c); },
                                     "independent resources exchange no packets"};
 inline constexpr Condition kTravel{[](const C& c, const S&) { return packets_travel(c); }, "no packet crosses a link"};
+inline constexpr Condition kWindow{
+    [](const C& c, const S&) { return any_testers(c, [](const TestersConfig& one) { return one.window > 1; }); },
+    "testers.window shows a resource one packet at a time"};
 inline constexpr Condition kManyResources{[](const C& c, const S&) { return c.topology.resources > 1; },
                                           "there is one resource"};
 inline constexpr Condition kMultiRing{

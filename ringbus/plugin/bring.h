@@ -5,11 +5,15 @@
 #include <utility>
 
 #include "core/config/fields/collections.h"
+#include "core/config/fields/graph.h"
 #include "core/config/fields/queue_kind.h"
 #include "core/config/fields/rays.h"
+#include "core/config/fields/testers.h"
 #include "core/config/fields/workload.h"
 #include "core/plugin/plugin.h"
+#include "core/types/dispatch_rule.h"
 #include "core/types/prefetcher_offer.h"
+#include "core/types/router_rule.h"
 #include "core/types/workload_offer.h"
 #include "ringbus/native/links/queue_link.h"
 #include "ringbus/queues/queue_design.h"
@@ -47,6 +51,16 @@ inline void bring_policy(PluginParts& parts, std::string name, const IssuePolicy
 /// A dispatch of new rays.
 inline void bring_placement(PluginParts& parts, std::string name, const PlacementRule& rule) {
   parts.add<Placement>(std::move(name), rule.choose ? std::make_shared<PlacementRule>(rule) : nullptr);
+}
+
+/// A router: the ways of packets through a drawn network.
+inline void bring_router(PluginParts& parts, std::string name, const RouterRule& rule) {
+  parts.add<Routing>(std::move(name), rule.choose ? std::make_shared<RouterRule>(rule) : nullptr);
+}
+
+/// A dispatch: the choice of a resource among the packets that wait.
+inline void bring_dispatch(PluginParts& parts, std::string name, const DispatchRule& rule) {
+  parts.add<Dispatch>(std::move(name), rule.choose ? std::make_shared<DispatchRule>(rule) : nullptr);
 }
 
 /// A workload with its options.

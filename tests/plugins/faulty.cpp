@@ -1,6 +1,7 @@
 // A plugin that does wrong what the environment says, for the messages of those who refuse it.
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -21,6 +22,19 @@ std::uint32_t any_bucket(const ringbus::CollectionFacts&, const ringbus::PolicyS
 
 std::uint32_t beyond(const RayRequest&, const ringbus::PlacementFacts& facts) {
   return static_cast<std::uint32_t>(facts.free_slots.size());
+}
+
+/// Takes what cannot go on, or what is not there.
+std::size_t hasty(std::span<const WaitingPacket> packets) {
+  for (std::size_t i = 0; i < packets.size(); ++i)
+    if (!packets[i].may_go && fault() == "hasty") return i;
+  return packets.size();
+}
+
+/// Sends packets to where they come from, or nowhere.
+std::size_t lost(const RouterQuestion& question) {
+  if (fault() == "nowhere") return question.links.size();
+  return question.at % 2 == 0 ? 0 : question.links.size() - 1;
 }
 
 /// Says that it made a ray, and made none.
@@ -65,6 +79,8 @@ void bring(PluginParts& parts) {
   if (fault() == "another's") ringbus::bring_policy(parts, "broad_first", policy);
   ringbus::bring_policy(parts, "lazy", policy);
   ringbus::bring_placement(parts, "beyond", {.choose = beyond});
+  ringbus::bring_router(parts, "lost", {.choose = lost});
+  ringbus::bring_dispatch(parts, "hasty", {.choose = hasty});
   ringbus::bring_prefetcher(parts, "breaker",
                             {.make = make_breaker, .table_bytes = [](const PrefetcherSetup&) { return 64; }});
   ringbus::bring_workload(parts, "liar", {.options = {}, .make = make});

@@ -56,6 +56,16 @@ inline constexpr auto kEnumNames<SimtConfig::IdleLanes> = [] {
   return names<SimtConfig::IdleLanes>({{kWait, "wait"}, {kHelp, "help"}});
 }();
 
+/// The rule by which a resource chooses among packets that wait. Plugins add others (core/types/dispatch_rule.h).
+enum class Dispatch { kReady };
+template <>
+inline constexpr auto kEnumNames<Dispatch> = [] {
+  using enum Dispatch;
+  return names<Dispatch>({{kReady, "ready"}});
+}();
+template <>
+inline constexpr std::string_view kAddedAs<Dispatch> = "dispatch";
+
 struct TestersConfig {
   PerUnit<TesterUnits> units = default_tester_units();
   struct Simd {
@@ -79,6 +89,7 @@ struct TestersConfig {
   SimtConfig simt;
   std::int64_t contexts = 16;
   std::int64_t window = 1;
+  Dispatch dispatch = Dispatch::kReady;
   enum class OwnRays { kBefore, kAfter } own_rays = OwnRays::kBefore;
   enum class AnyHit { kInline, kShader } any_hit = AnyHit::kInline;
   enum class BundleBlocks { kSeparate, kPairs, kShared } bundle_blocks = BundleBlocks::kSeparate;
@@ -210,6 +221,9 @@ void describe(V& v, TestersConfig& c) {
           "The number of packets at the front of a resource's input queue among which it takes the first that can go "
           "on and whose shapes are there.")
       .only(EngineKind::kCycle, "choice among packets that have arrived");
+  v.choice("dispatch", c.dispatch,
+           "The packet that a resource takes of those in its window: ready, the first that can go on and whose shapes "
+           "are there, or else the first that can go on; or the choice of a plugin.");
   v.choice("own_rays", c.own_rays,
            "The issuer of a packet tests its own rays before the packet leaves, or after it has come back.");
   v.choice("any_hit", c.any_hit,

@@ -6,6 +6,9 @@
 #include <tuple>
 #include <utility>
 
+#include "core/types/added_names.h"
+#include "core/types/router_rule.h"
+
 namespace carousel::config {
 
 namespace {
@@ -92,6 +95,30 @@ class UpDown {
   std::vector<std::uint32_t> downwards_;  // nodes, the root first
 };
 
+/// Puts the answers of a plugin's router in place of the shortest ways, which `links` has.
+void ask_router(const RouterRule& rule, const Graph& graph, const Links& out, std::size_t lane,
+                std::vector<std::uint32_t>& links) {
+  const std::size_t nodes = graph.nodes.size();
+  std::vector<RouterNode> facts;
+  for (std::uint32_t i = 0; i < nodes; ++i) {
+    const GraphPoint& at = graph.nodes[i].at;
+    facts.push_back({i < graph.resources, at.given, at.x, at.y});
+  }
+  std::vector<RouterLink> choices;
+  for (std::uint32_t at = 0; at < nodes; ++at) {
+    choices.clear();
+    for (const std::uint32_t i : out[at])
+      choices.push_back({graph.links[i].to, graph.links[i].latency_cycles, graph.links[i].bytes_per_cycle});
+    for (std::uint32_t to = 0; to < graph.resources; ++to) {
+      if (to == at || choices.empty()) continue;
+      std::uint32_t& link = links[at * nodes + to];
+      const auto shortest = static_cast<std::size_t>(std::ranges::find(out[at], link) - out[at].begin());
+      const std::size_t chosen = rule.choose({facts, choices, at, to, static_cast<std::uint32_t>(lane), shortest});
+      link = chosen < choices.size() ? out[at][chosen] : Routes::kNone;
+    }
+  }
+}
+
 }  // namespace
 
 std::uint32_t root_of(const Graph& graph) {
@@ -124,6 +151,7 @@ Routes::Routes(const Graph& graph, std::size_t lane)
     return;
   }
   for (std::uint32_t node = 0; node < nodes_; ++node) find_ways(graph, out, node, links_.data() + node * nodes_);
+  if (const auto* rule = added_body<RouterRule>(graph.routing)) ask_router(*rule, graph, out, lane, links_);
   for (const Graph::Hop& hop : graph.hops)
     if (graph.links[hop.link].is_for(lane)) links_[hop.at * nodes_ + hop.to] = hop.link;
 }

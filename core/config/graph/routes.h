@@ -20,6 +20,8 @@ namespace carousel::config {
 /// destination, the shortest such way is taken; else the one that goes up first and is the shortest then. So no way
 /// goes up after it has gone down, and links that wait for one another form no circle.
 ///
+/// A plugin's router: by its answers (core/types/router_rule.h). Nothing here keeps such ways from going round either.
+///
 /// given: by the table, and the shortest where it has no entry. Nothing here keeps such ways from going round.
 ///
 /// Packets of a lane take the links that are for it, and the heights of up_down are those of all links.

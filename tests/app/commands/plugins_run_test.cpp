@@ -28,7 +28,8 @@ std::string plugin(const std::string& name) {
 }
 std::string all_plugins() {
   return "engine.plugins=[" + plugin("own_queue") + ", " + plugin("own_policy") + ", " + plugin("own_placement") +
-         ", " + plugin("own_workload") + ", " + plugin("own_prefetcher") + "]";
+         ", " + plugin("own_workload") + ", " + plugin("own_prefetcher") + ", " + plugin("own_router") + ", " +
+         plugin("own_dispatch") + "]";
 }
 
 class Plugins : public testing::Test {
@@ -184,6 +185,68 @@ TEST_F(Plugins, APrefetcherThatBreaksItsContractEndsTheRun) {
   EXPECT_THAT(message("no prefetcher"), HasSubstr("prefetcher.rule: breaker makes none"));
 }
 
+// A router's answers are the tables of the network: check, verdict and both engines have its ways.
+TEST_F(Plugins, ARouterFindsTheWays) {
+  const std::vector<std::string> mesh{all_plugins(),
+                                      "engine.what_if=false",
+                                      "topology.visit=owners",
+                                      "topology.shape=graph",
+                                      "topology.resources=9",
+                                      "topology.nodes=[{name: r, count: 9, at: [0, 0], step: [2, 2], columns: 3}]",
+                                      "topology.links=[{mesh: [3, 3], of: 'r[*]'}]"};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), mesh.begin(), mesh.end());
+    return more;
+  };
+  const Json shortest = report(with({"engine.kind=cycle"})),
+             own = report(with({"engine.kind=cycle", "topology.routes=columns_first"}));
+  EXPECT_EQ(own["digest"], shortest["digest"]);
+  EXPECT_NE(own["engine"]["cycles"], shortest["engine"]["cycles"]);
+  EXPECT_EQ(own["config"]["topology"]["routes"], "columns_first");
+  EXPECT_EQ(report(with({"engine.kind=native", "topology.routes=columns_first"}))["digest"], own["digest"]);
+  // The last way but for the first turn: no packet leaves the middle row for a column.
+  const std::vector<std::string> traffic =
+      with({"engine.kind=cycle", "workload={traffic: {rate: 0.1, packets: 2000}}"});
+  const Outcome circles = run(traffic, "check");
+  std::vector<std::string> columns = traffic;
+  columns.push_back("topology.routes=columns_first");
+  const Outcome none = run(columns, "check");
+  EXPECT_EQ(none.status, 0) << none.err;
+  EXPECT_THAT(none.out, HasSubstr("no circle: the links of all ways can be put in an order"));
+  EXPECT_EQ(circles.out.find("no circle"), std::string::npos) << circles.out;
+  EXPECT_THAT(refusal(with({"topology.routes=column_first"})), HasSubstr("did you mean 'columns_first'?"));
+}
+
+TEST_F(Plugins, ARouterWhoseWaysDoNotEndIsRefused) {
+  const std::vector<std::string> line{"engine.kind=cycle",    "topology.visit=owners",
+                                      "topology.shape=graph", "topology.nodes=[{name: r, count: 4}]",
+                                      "topology.routes=lost", "topology.links=[{line: 'r[*]', both: true}]"};
+  EXPECT_THAT(fault("circles", line), HasSubstr("topology.routes: lost sends packets from r["));
+  EXPECT_THAT(fault("nowhere", line), HasSubstr("topology.links: there is no way of lost from r[0] to r[1]"));
+}
+
+TEST_F(Plugins, ADispatchChoosesAmongPacketsThatWait) {
+  const std::vector<std::string> machine{"scene={builtin: terrain, triangles: 2000}", "engine.kind=cycle",
+                                         "engine.what_if=false", "testers={window: 4, contexts: 2}", all_plugins()};
+  const auto with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), machine.begin(), machine.end());
+    return report(more);
+  };
+  const Json ready = with({}), own = with({"testers.dispatch=fullest_first", "engine.threads=1"});
+  EXPECT_EQ(own["digest"], ready["digest"]);
+  EXPECT_NE(own["engine"]["cycles"], ready["engine"]["cycles"]);
+  EXPECT_EQ(own["config"]["testers"]["dispatch"], "fullest_first");
+  EXPECT_EQ(with({"testers.dispatch=fullest_first", "engine.threads=3"})["engine"]["cycles"], own["engine"]["cycles"]);
+  for (const char* fault : {"hasty", "none"}) {
+    setenv("CAROUSEL_TEST_FAULT", fault, 1);
+    const Outcome outcome = run({"engine.plugins=[" + plugin("faulty") + "]", "engine.kind=cycle",
+                                 "engine.what_if=false", "testers={window: 4, contexts: 1, dispatch: hasty}"});
+    unsetenv("CAROUSEL_TEST_FAULT");
+    EXPECT_EQ(outcome.status, 1) << outcome.err;
+    EXPECT_THAT(outcome.err, HasSubstr("testers.dispatch: hasty chose packet "));
+  }
+}
+
 TEST_F(Plugins, NamesAreKnownToMessagesAndSchema) {
   EXPECT_THAT(refusal({all_plugins(), "collections.policy=broad_frist"}),
               HasSubstr("found 'broad_frist'; did you mean 'broad_first'?"));
@@ -197,13 +260,16 @@ TEST_F(Plugins, NamesAreKnownToMessagesAndSchema) {
 
   const Outcome schema =
       program_.run({"schema", "config", "--plugin", plugin("own_queue"), "--plugin", plugin("own_workload"), "--plugin",
-                    plugin("own_placement"), "--plugin", plugin("own_prefetcher")});
+                    plugin("own_placement"), "--plugin", plugin("own_prefetcher"), "--plugin", plugin("own_router"),
+                    "--plugin", plugin("own_dispatch")});
   ASSERT_EQ(schema.status, 0) << schema.err;
   const Json json = Json::parse(schema.out)["properties"];
   const Json& queues = json["topology"]["properties"]["link"]["properties"]["queue"]["enum"];
   EXPECT_EQ(queues.back(), "fast_forward");
   EXPECT_EQ(json["shading"]["properties"]["queue"]["enum"], queues);
   EXPECT_EQ(json["rays"]["properties"]["placement"]["enum"].back(), "octants");
+  EXPECT_EQ(json["topology"]["properties"]["routes"]["enum"].back(), "columns_first");
+  EXPECT_EQ(json["testers"]["properties"]["dispatch"]["enum"], Json::array({"ready", "fullest_first"}));
   EXPECT_EQ(json["prefetcher"]["properties"]["rule"]["enum"], Json::array({"strides", "pairs"}));
   EXPECT_THAT(json["workload"].dump(), HasSubstr(R"("beams":{"type":"number","minimum":1.0,"maximum":1000000.0)"));
   EXPECT_EQ(program_.run({"schema", "config", "--plugin", "nowhere.so"}).status, 2);

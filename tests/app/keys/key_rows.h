@@ -312,10 +312,11 @@ inline std::vector<std::string> keys_without_a_row() {
       "frames.update",          // with none nothing may move, and all are one; frames_run_test.cpp has it
       "vary",                   // it is for sweeps; `run` warns of it
       "workload.memory_trace",  // it replaces the machine; memory_trace_test.cpp has it
-      "engine.plugins",         // these four take shared libraries; plugins_run_test.cpp has them
+      "engine.plugins",         // these five take shared libraries; plugins_run_test.cpp has them
       "workload.plugin",
       "workload.options",
       "prefetcher.rule",
+      "testers.dispatch",  // it has one value without a plugin; plugins_run_test.cpp has another
   };
 }
 

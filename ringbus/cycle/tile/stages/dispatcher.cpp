@@ -2,6 +2,10 @@
 
 #include <algorithm>
 
+#include <fmt/format.h>
+
+#include "core/system/error.h"
+#include "core/types/added_names.h"
 #include "ringbus/protocol/answers.h"
 
 namespace carousel::ringbus::cycle {
@@ -19,6 +23,8 @@ Dispatcher::Dispatcher(const TileParts& parts, const TileSettings& settings, std
       cuts_through_(routed_ || (!visit_all_ && !parts.machine.topology.direct())),
       broadcasts_(parts.machine.topology.broadcasts()),
       fetch_by_resource_(settings.fetches_by_resource()),
+      rule_(added_body<DispatchRule>(settings.testers.dispatch)),
+      rule_name_(enum_name(settings.testers.dispatch)),
       window_(static_cast<std::size_t>(settings.testers.window)),
       passed_over_(in.size()) {}
 
@@ -231,8 +237,8 @@ bool Dispatcher::choose_to_cut(std::size_t d, Cycle now) {
 bool Dispatcher::choose_to_handle(std::size_t d, Cycle now) {
   InPort& in = in_[d];
   const std::size_t end = passed_over_[d] >= window_ ? 1 : seen(d, now);
-  std::size_t chosen = end;
-  for (std::size_t i = 0; i < end; ++i) {
+  std::size_t chosen = rule_ != nullptr ? ask_rule(d, end) : end;
+  for (std::size_t i = 0; i < end && rule_ == nullptr; ++i) {
     const Token& token = in.peek(i);
     const std::optional<Decision> decision = decide(d, token);
     if (!decision || !may_take(*decision)) continue;
@@ -249,6 +255,32 @@ bool Dispatcher::choose_to_handle(std::size_t d, Cycle now) {
   in.bring_forward(chosen);
   parts_.dispatch.hold(now, 1, 0, SliceKind::kPass, in.front().packet, !in.front().passes);
   return true;
+}
+
+/// The choice of a plugin among the first packets of a queue; `end` if none of them may go.
+std::size_t Dispatcher::ask_rule(std::size_t d, std::size_t end) {
+  waiting_.clear();
+  bool any = false;
+  for (std::size_t i = 0; i < end; ++i) {
+    const Token& token = in_[d].peek(i);
+    const Packet& packet = parts_.machine.packet(token.packet);
+    const std::optional<Decision> decision = decide(d, token);
+    WaitingPacket& one = waiting_.emplace_back();
+    one.rays = static_cast<std::uint32_t>(packet.members.size());
+    one.depth = packet.depth;
+    one.own = packet.owner == id();
+    if (!decision) continue;
+    one.may_go = may_take(*decision);
+    one.tests = decision->action == Action::kTest || decision->action == Action::kTestOwn;
+    one.has_shapes = !waits_for_shapes(*decision, token);
+    any = any || one.may_go;
+  }
+  if (!any) return end;
+  const std::size_t chosen = rule_->choose(waiting_);
+  if (chosen >= end || !waiting_[chosen].may_go)
+    throw SimulationError(fmt::format("testers.dispatch: {} chose packet {} of {}, {}", rule_name_, chosen, end,
+                                      chosen < end ? "which cannot go on" : "which is none"));
+  return chosen;
 }
 
 bool Dispatcher::waits_for_shapes(const Decision& decision, const Token& token) const {

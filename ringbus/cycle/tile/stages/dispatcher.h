@@ -2,8 +2,10 @@
 
 #include <cstddef>
 #include <optional>
+#include <string_view>
 #include <vector>
 
+#include "core/types/dispatch_rule.h"
 #include "ringbus/cycle/fabric/course.h"
 #include "ringbus/cycle/tile/stages/issue_queue.h"
 #include "ringbus/cycle/tile/stages/ray_entry.h"
@@ -20,8 +22,8 @@ namespace carousel::ringbus::cycle {
 /// With `testers.window` it chooses among the first packets of an input queue (US 9633468 lets a resource look at
 /// several packets of its queue and process them out of order where that helps). It takes the first one that can go on
 /// at once and needs no shapes from memory, otherwise the first one that can go on. It looks at all of them at the same
-/// time; dispatch needs a cycle more if it takes another than the first. So that none waits for ever, the first one is
-/// passed over at most as often as the window is long.
+/// time, as does a plugin's rule in its place; dispatch needs a cycle more if it takes another than the first. So that
+/// none waits for ever, the first one is passed over at most as often as the window is long.
 class Dispatcher {
  public:
   /// Keeps the references. `in`: its input queues, by port.
@@ -115,6 +117,7 @@ class Dispatcher {
   bool choose_to_cut(std::size_t d, Cycle now);
   bool choose_to_handle(std::size_t d, Cycle now);
   std::size_t seen(std::size_t d, Cycle now) const;
+  std::size_t ask_rule(std::size_t d, std::size_t end);
   bool waits_for_shapes(const Decision& decision, const Token& token) const;
 
   ResourceId id() const { return parts_.resource.id(); }
@@ -126,6 +129,9 @@ class Dispatcher {
   RayEntry& entry_;
   const ShadeHelp& help_;
   bool visit_all_, routed_, cuts_through_, broadcasts_, fetch_by_resource_;
+  const DispatchRule* rule_;              // a plugin's; null: one of the program
+  std::string_view rule_name_;            // which stays where it is
+  std::vector<WaitingPacket> waiting_;    // scratch
   std::size_t window_;                    // packets at the front of an input queue among which it chooses
   std::size_t next_in_ = 0;               // ports have their turns
   std::vector<std::size_t> passed_over_;  // by port: how often the first one has been
