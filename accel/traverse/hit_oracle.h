@@ -16,7 +16,7 @@ namespace carousel::accel {
 
 /// Answers for rays by a second way, with which `verify: reference` compares: the scene's own triangles and spheres, in
 /// binary trees of its own, tested one by one in scalar code. It knows no Accel: neither nodes nor blocks, quantised or
-/// not, nor groups, planes, elements or merged meshes. docs/how-it-works/design.md lists what the two share. Immutable
+/// not, nor groups, planes, elements or merged meshes. docs/reference/verify.md lists what the two share. Immutable
 /// once built; any thread may call.
 class HitOracle {
  public:

@@ -16,7 +16,7 @@
 namespace carousel::accel {
 
 /// The definition of a hit (docs/how-it-works/design.md, What a hit is) in scalar code for one primitive of one
-/// instance at a time. It knows the scene and no acceleration structure. docs/how-it-works/design.md lists what it
+/// instance at a time. It knows the scene and no acceleration structure. docs/reference/verify.md lists what it
 /// shares with the kernels. Immutable; any thread may call.
 class OraclePrimitives {
  public:

@@ -9,7 +9,7 @@
 
 namespace carousel {
 
-/// What an instruction does (docs/how-it-works/programs.md). `d`, `a`, `b`, `c` are registers.
+/// What an instruction does (docs/reference/instructions.md). `d`, `a`, `b`, `c` are registers.
 enum class Op : std::uint8_t {
   kLoad,       ///< d = value
   kMove,       ///< d = a

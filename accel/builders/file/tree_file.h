@@ -44,7 +44,7 @@ struct FileTree {
   std::vector<std::uint32_t> primitives;  ///< of all leaves
 };
 
-/// The trees of a scene's meshes (docs/how-it-works/builders.md has the format).
+/// The trees of a scene's meshes (docs/reference/tree-files.md has the format).
 struct TreeFile {
   std::string name;  ///< for errors
   std::vector<FileTree> trees;
