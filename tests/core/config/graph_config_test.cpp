@@ -169,12 +169,6 @@ INSTANTIATE_TEST_SUITE_P(
                   "topology: {shape: graph, form: distributor, nodes: [{name: c, kind: packet_process, count: 2}],\n"
                   "  links: [{ring: 'c[*]'}]}\n",
                   "topology.form: a distributor stands in a machine of one unit yet"},
-        BadConfig{
-            "UnitThatServesItself",
-            "topology: {shape: graph, nodes: [{name: c, kind: packet_process, serves: c}], links: []}\n"
-            "testers: {simd: {lanes: 8}}\n",
-            "test.yaml:3:74: topology.nodes.0.serves: a packet_process keeps the collections of resources; expected "
-            "such nodes, found c"},
         BadConfig{"SameLane",
                   "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]', lanes: 2},\n"
                   "  {from: 'r[0]', to: 'r[1]', lane: 1}]}\n",

@@ -61,8 +61,9 @@ TEST(PacketProcessConfig, NothingIsBuiltTwice) {
 }
 
 TEST(PacketProcessConfig, WrongNamesHaveTheirPlace) {
-  EXPECT_THAT(refusal("    - {name: p, kind: packet_process, serves: 's[*]'}\n"),
-              ElementsAre(AllOf(StartsWith("test.yaml:8:47: topology.nodes.2.serves: "), HasSubstr("'r'"))));
+  EXPECT_THAT(
+      refusal("    - {name: p, kind: packet_process, serves: 's[*]'}\n"),
+      ElementsAre(AllOf(StartsWith("test.yaml:8:47: topology.nodes.2.serves: "), HasSubstr("known are l2, p, r"))));
   EXPECT_THAT(
       refusal("    - {name: p, kind: packet_process, serves: 'r[*], l2'}\n"),
       ElementsAre("test.yaml:8:47: topology.nodes.2.serves: a packet_process keeps the collections of resources; "
