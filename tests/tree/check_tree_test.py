@@ -174,6 +174,24 @@ class ConfigUsers(InAFolder):
                           "users.txt:1: a/b.cpp does not include core/config/config.h; remove the row"])
 
 
+class Names(InAFolder):
+    def faults(self, text):
+        self.write("a/queue.h", "#pragma once\n\ntemplate <class T>\nclass Queue final : public Base {\n};\nenum class Side { kLeft };\n"
+                                "using Depth = int;\n")
+        self.write("a/user.h", text)
+        return list(check_tree.name_faults(["a/queue.h", "a/user.h"]))
+
+    def test_a_header_includes_what_it_names(self):
+        for use, name in ("void f(const Queue<int>& queue);", "Queue"), ("Side side_of(int);", "Side"), ("Depth depth;", "Depth"):
+            self.assertEqual(self.faults(use), [f"a/user.h: names {name} and does not include a/queue.h"])
+            self.assertEqual(self.faults('#include "a/queue.h"\n' + use), [])
+
+    def test_other_names_that_look_alike(self):
+        for text in ("class Queue;\nvoid f(Queue&);", "struct Outer {\n  struct Side {};\n  Side side;\n};",
+                     "// as Queue has it", "template <class Depth>\nvoid f(Depth);", "auto f() { return other::Side(); }"):
+            self.assertEqual(self.faults(text), [], text)
+
+
 class WholeTree(unittest.TestCase):
     def test_a_planted_class_and_a_planted_include_fail(self):
         """In a copy of the tree with its sources, and with two faults more."""
