@@ -43,6 +43,10 @@ def starts_processes():
         return False
 
 
+# Tests that wait long, or need a large scene: script/soak runs them.
+long_test = unittest.skipUnless(EFFORT >= 1, "takes long: CAROUSEL_EFFORT=1, as in script/soak, runs it")
+
+
 def some(cases):
     return cases[::max(1, round(1 / EFFORT))]
 
@@ -220,6 +224,7 @@ class PartitionedScene(Ranks):
                               "collections.traversal=treelet"])
         self.assertIn("packets.shapes: above treelets", refusal.stderr)
 
+    @long_test
     def test_a_scene_that_no_rank_could_hold(self):
         """The limit lies between what a rank needs of four and what each needs for the whole: a million triangles, of
         which a process holds 110 MB, and more while it builds the structure."""
@@ -504,7 +509,7 @@ class Failures(Ranks):
     def test_a_rank_that_hangs_before_rays_are_traced(self):
         """The others read a file that does not end, and are not waiting for it."""
         os.mkfifo(self.folder / "pipe.gltf")
-        for way in "self,vader", "self,tcp":
+        for way in some(["self,vader", "self,tcp"]):
             run, ranks = self.begin(["scene={file: pipe.gltf}"], 2, ("--mca", "btl", way))
             self.stopped(run, ranks[1], 1)
 
@@ -515,6 +520,7 @@ class Failures(Ranks):
         self.assertEqual(run.returncode, 1, text)
         self.assertRegex(text, "rank 1 (is stopped|has said nothing)")
 
+    @long_test
     def test_a_rank_that_hangs_while_files_are_written(self):
         """Rank 0 writes them, into a hidden folder first; the others wait for it."""
         large = ["image.width=400", "image.height=300", "image.samples=1", "image.max_depth=1", "engine.threads=1",
@@ -530,6 +536,7 @@ class Failures(Ranks):
             self.assertEqual(self.alone(large).returncode, 0)
             self.assertEqual(self.digests("ranks"), self.digests("alone"))
 
+    @long_test
     def test_a_rank_that_is_only_slow(self):
         """It reads a file for longer than a rank may be silent. Two hosts are two folders."""
         write_patches(self.folder / "scene.gltf", 1, 8)

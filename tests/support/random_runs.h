@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
+#include <vector>
 
 namespace carousel {
 
@@ -15,8 +16,8 @@ inline std::uint32_t run_seed() {
   return seed != nullptr ? static_cast<std::uint32_t>(std::strtoull(seed, nullptr, 10)) : 1u;
 }
 
-/// CAROUSEL_EFFORT, by which numbers of random cases are multiplied: 1 unless it is set. script/test runs with 0.25,
-/// and with 0.1 under sanitizers, the soak with more than 1.
+/// CAROUSEL_EFFORT, by which numbers of random cases are multiplied: 1 unless it is set. script/test runs with 0.1, the
+/// soak with 1 and more.
 inline double run_effort() {
   const char* effort = std::getenv("CAROUSEL_EFFORT");
   return effort != nullptr ? std::atof(effort) : 1.0;
@@ -26,5 +27,27 @@ inline double run_effort() {
 inline int scaled(int cases, int least = 1) {
   return std::max(least, static_cast<int>(cases * run_effort()));
 }
+
+/// The cases of a table that takes long: all, or where the effort is below 1 every 1 / effort-th, which are others for
+/// another seed. For cases that show one rule again on another machine, not for tables whose rows are rules of their
+/// own.
+template <class Case>
+std::vector<Case> some(const std::vector<Case>& cases, std::size_t least = 1) {
+  const double effort = std::clamp(run_effort(), 1e-3, 1.0);
+  const auto wanted = std::min(cases.size(), std::max(least, static_cast<std::size_t>(effort * cases.size() + 0.5)));
+  std::vector<Case> out;
+  for (std::size_t i = 0; i < wanted; ++i)
+    out.push_back(cases[(run_seed() - 1 + i * cases.size() / wanted) % cases.size()]);
+  return out;
+}
+
+/// Whether tests run that take long and show a rule on a larger machine, or more often, than another test does: not in
+/// script/test. They are run by script/soak, and by hand.
+inline bool long_tests_run() {
+  return run_effort() >= 1;
+}
+
+/// What a test that does not run says.
+inline constexpr const char* kInSoak = "takes long: CAROUSEL_EFFORT=1, as in script/soak, runs it";
 
 }  // namespace carousel

@@ -25,6 +25,9 @@ export const pages = {
   compare: {command: 'compare', of: ['machine', 'native']},
 };
 
+// Where there is little time: the page with most sections, and one whose charts are of points.
+export const shortly = ['machine', 'sweep'];
+
 export const all = {
   ...pages,
   ring: machine('demo', cycle),

@@ -1,5 +1,5 @@
 // Opens the program's pages in Chromium, as users do: node pages.mjs PROGRAM SOURCES [all | NAME,...]
-// Every kind of page, or with `all` also the pages of a dozen machines. On a phone, on a large screen, dark, and without
+// Every kind of page, or with `all` also the pages of a dozen machines; with CAROUSEL_EFFORT below 1 few kinds. On a phone, on a large screen, dark, and without
 // scripts: no message on the console, marks in every chart, the JSON's numbers in tables and charts, and no violation that
 // axe-core finds. Exit status 1 and a line for each fault.
 import {existsSync} from 'node:fs';
@@ -8,7 +8,7 @@ import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 
-import {all, pages} from './machines.mjs';
+import {all, pages, shortly} from './machines.mjs';
 import {wrongCharts, wrongTables} from './numbers.mjs';
 import {make, playsRanks} from './program.mjs';
 import {wrongStudy} from './study_numbers.mjs';
@@ -130,7 +130,8 @@ async function look(browser, name, command, {page: file, json}) {
 }
 
 try {
-  const list = wanted === 'all' ? all : wanted ? Object.fromEntries(wanted.split(',').map((n) => [n, all[n]])) : pages;
+  const few = Number(process.env.CAROUSEL_EFFORT ?? 1) < 1;  // script/test; script/soak opens all
+  const list = wanted === 'all' ? all : few && !wanted ? Object.fromEntries(shortly.map((n) => [n, all[n]])) : wanted ? Object.fromEntries(wanted.split(',').map((n) => [n, all[n]])) : pages;
   const browser = await chromium.launch({executablePath: browser_path, args: ['--no-sandbox', '--disable-gpu', '--no-first-run',
     '--disable-background-networking', '--disable-component-update', '--disable-sync']});
   if (Object.values(list).some((page) => page.ranks) && !(await playsRanks(program, sources))) {

@@ -13,6 +13,7 @@
 #include "tests/app/support/program.h"
 #include "tests/scene/gltf/gltf_builder.h"
 #include "tests/support/hdr_file.h"
+#include "tests/support/random_runs.h"
 #include "tests/support/read_exr.h"
 
 namespace carousel::sky_map_run_test {
@@ -121,7 +122,7 @@ TEST_F(SkyMapRun, ABakedSkyLightsEachFaceAsItsClosedForm) {
   program_.write("a.yaml",
                  "scene: {file: box.gltf, sky: {file: evening.exr, rotation: 75}}\n"
                  "image: {width: 24, height: 24, samples: 64, max_depth: 2}\n");
-  for (const DVec3& n : {DVec3{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}}) {
+  for (const DVec3& n : some(std::vector<DVec3>{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 0, -1}}, 2)) {
     const Vec3 expected = white_radiance(evening, n);
     for (const auto& [way, bound] : std::vector<std::pair<std::string, double>>{
              {"image.max_depth=1", 0.02},
@@ -180,17 +181,19 @@ TEST_F(SkyMapRun, GivesTheSamePictureOnEveryMachine) {
     const Json base = run("a.yaml", {"engine.threads=1"});
     ASSERT_FALSE(base.is_null());
     EXPECT_EQ(base["digest"]["image"].get<std::string>().empty(), false);
-    for (const std::vector<std::string>& sets : std::vector<std::vector<std::string>>{
-             {"engine.threads=3"},
-             {"topology.resources=1"},
-             {"topology.shape=point_to_point", "engine.threads=2"},
-             {"engine.kind=cycle"},
-             {"engine.kind=cycle", "engine.threads=2", "topology.shape=bidirectional"},
-             {"engine.kind=cycle", "topology.shape=independent"},
-             {"engine.kind=cycle", "memory.sky_map=memory", "memory.path_state=memory"},
-             {"engine.kind=cycle", "memory.sky_map=memory", "memory.line_bytes=32", "shading.lanes=4"},
-             {"engine.kind=cycle", "shading.effects=all"},
-             {"engine.simd=scalar"}}) {
+    for (const std::vector<std::string>& sets : some(
+             std::vector<std::vector<std::string>>{
+                 {"engine.threads=3"},
+                 {"topology.resources=1"},
+                 {"topology.shape=point_to_point", "engine.threads=2"},
+                 {"engine.kind=cycle"},
+                 {"engine.kind=cycle", "engine.threads=2", "topology.shape=bidirectional"},
+                 {"engine.kind=cycle", "topology.shape=independent"},
+                 {"engine.kind=cycle", "memory.sky_map=memory", "memory.path_state=memory"},
+                 {"engine.kind=cycle", "memory.sky_map=memory", "memory.line_bytes=32", "shading.lanes=4"},
+                 {"engine.kind=cycle", "shading.effects=all"},
+                 {"engine.simd=scalar"}},
+             3)) {
       EXPECT_EQ(run("a.yaml", sets)["digest"], base["digest"]) << testing::PrintToString(sets);
     }
     EXPECT_NE(run("a.yaml", {"scene.sky.rotation=90"})["digest"]["image"], base["digest"]["image"]);

@@ -12,6 +12,7 @@
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::verdict_run_test {
 namespace {
@@ -107,6 +108,7 @@ TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
 // A pilot of a frame of few rays is the frame. Its gains are measured, and still differ with the random numbers of the
 // picture.
 TEST_F(VerdictRun, TheIntervalOfAWholeFrameHoldsTheGainsOfOtherSeeds) {
+  if (!long_tests_run()) GTEST_SKIP() << kInSoak;
   const std::vector<std::string> whole{"image.width=48", "image.height=36", "image.samples=1"};
   std::vector<std::string> searched = whole;
   searched.push_back("engine.what_if=true");
@@ -164,6 +166,7 @@ TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
 // Nothing comes near to what more testers gain here, so that no other class is simulated for the larger pilot: by six
 // classes and the machine as configured it would bring the search to nearly as many rays as the run.
 TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoLargerPilot) {
+  if (!long_tests_run()) GTEST_SKIP() << kInSoak;
   program_.write("a.yaml", kTerrain);
   const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=256",
                                         "--set", "image.height=160", "--out", "out", "--log-level", "debug"});

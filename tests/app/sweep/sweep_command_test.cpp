@@ -116,15 +116,15 @@ TEST_F(SweepCommand, KeepsFailedPointsUntilTheyAreToBeRetried) {
 }
 
 TEST_F(SweepCommand, ShardsAndMergeGiveTheWholeSweep) {
-  const std::vector<std::string> vary{"--vary", "topology.resources=1..8", "--vary", "memory.l2_kib=64,512"};
+  const std::vector<std::string> vary{"--vary", "topology.resources=1..4", "--vary", "memory.l2_kib=64,512"};
   std::vector<std::string> whole = vary, merged = vary;
   whole.insert(whole.end(), {"--out", "whole"});
   merged.insert(merged.end(), {"--out", "merged"});
   ASSERT_EQ(sweep(whole).status, 0);
-  for (int i = 1; i <= 8; ++i) {
+  for (int i = 1; i <= 4; ++i) {
     const std::string folder = "shard" + std::to_string(i);
     std::vector<std::string> part = vary;
-    part.insert(part.end(), {"--out", folder, "--shard", std::to_string(i) + "/8"});
+    part.insert(part.end(), {"--out", folder, "--shard", std::to_string(i) + "/4"});
     ASSERT_EQ(sweep(part).status, 0);
     EXPECT_FALSE(std::filesystem::exists(program_.folder() / folder / "sweep.sqlite"));
     EXPECT_EQ(points_of(program_.folder() / folder).size(), 2u);

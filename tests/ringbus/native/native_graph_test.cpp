@@ -52,7 +52,8 @@ class NativeGraph : public testing::Test {
 TEST_F(NativeGraph, RunsTheDrawings) {
   for (const char* const drawing : {kRing, kClusters, kHierarchy, kTree})
     for (const char* const more :
-         {"", "  visit: all\n", "  link: {depth: 1}\n", "  link: {depth: 64}\n", "  flow: bubble\n"}) {
+         some(std::vector{"", "  visit: all\n", "  link: {depth: 1}\n", "  link: {depth: 64}\n", "  flow: bubble\n"},
+              2)) {
       const Config config = machine(std::string(drawing) + more);
       if (!deadlock_verdict(config).can_deadlock) expect_whole(config, std::string(drawing) + more);
     }

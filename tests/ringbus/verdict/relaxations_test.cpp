@@ -150,7 +150,7 @@ TEST(WhatIf, EveryLiftIsNoticed) {
        0.05},
   };
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 600, 2);
-  for (const Plant& plant : slow) {
+  for (const Plant& plant : some(slow, 10)) {
     Config config = generous_machine();
     plant.make(config);
     const accel::Accel& accel = scene.accel(config.bvh);

@@ -68,7 +68,7 @@ Bottleneck search(TestScene& scene, const Config& config, std::uint64_t paths, c
 
 TEST(WhatIf, NamesThePlantedBottleneck) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), 1500, 2);
-  for (const Plant& plant : plants()) {
+  for (const Plant& plant : some(plants(), 3)) {
     Config config = generous_machine();
     plant.make(config);
     const Bottleneck found = search(scene, config, 1500, run_whole(scene, config));
@@ -134,6 +134,7 @@ Config random_machine(std::uint32_t seed) {
 // Every class that gains something by the pilot is relaxed for the whole run: the class named must be best or within 3
 // % of it, and the gain foretold within its interval. 30 machines with CAROUSEL_EFFORT=15.
 TEST(WhatIf, PredictsRandomMachines) {
+  if (!long_tests_run()) GTEST_SKIP() << kInSoak;
   constexpr std::uint32_t kPaths = 24000;  // more than of a pilot
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 1000, 0), kPaths, 2);
   const int machines = cell_count(2);
