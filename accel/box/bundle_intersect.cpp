@@ -185,8 +185,16 @@ BundleAnswer answer(Form form, const Node& node, std::uint32_t lanes, BundlesCon
 template <class Real>
 BundleAnswer answer_as(BoxLevel level, const Node& node, std::uint32_t lanes, const BundleRecord& bundle,
                        const BundlesConfig& config, IntersectionCounts& counts) {
-  if (config.form == BundlesConfig::Form::kSilhouette && bundle.count != 1 && BundleSilhouette::applies(bundle))
-    return answer(SilhouetteForm<Real>(bundle, level, config.edges), node, lanes, config.order, counts);
+  if (config.form == BundlesConfig::Form::kSilhouette && bundle.count != 1 && BundleSilhouette::applies(bundle)) {
+    const std::uint64_t before = counts.bundle;
+    BundleAnswer out = answer(SilhouetteForm<Real>(bundle, level, config.edges), node, lanes, config.order, counts);
+    out.silhouettes = true;
+    counts.silhouettes += counts.bundle - before;
+    counts.edges += out.edges;
+    counts.reciprocals += static_cast<std::uint64_t>(std::popcount(out.all));
+    return out;
+  }
+  counts.reciprocals += kDirectionDivisions;
   return answer(IntervalForm<Real>(bundle, far_widening(level), config.strict), node, lanes, config.order, counts);
 }
 

@@ -22,7 +22,7 @@ namespace {
 using report::AreaPart;
 
 constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024, kEntryBytes = 12,
-                 kNodeBytes = 128, kWaitingBytes = 256;
+                 kNodeBytes = 128, kWaitingBytes = 256, kVoteBytes = 8;
 
 void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, const TestersConfig& testers) {
   for (const auto [kind, units] : testers.units) {
@@ -71,12 +71,14 @@ bool scale_shared_parts(Config& c, const Config& from) {
   return c.shading.workers.value_or(1) <= 256 && c.memory.l2_banks <= 64 && c.memory.l2_kib <= 1 << 20;
 }
 
-/// The stacks of a resource that traces its own rays; with warps also the data of the node that each lane tests.
+/// The stacks of a resource that traces its own rays; with warps also the data of the node that each lane tests, and
+/// the table of a prefetcher, with a treelet and its votes for each lane.
 double stack_kib(const Config& c, std::int64_t resource) {
   const OwnSections own = own_sections(c, resource);
   const SimtConfig& simt = own.testers.simt;
   if (simt.warp == 0) return static_cast<double>(own.rays.slots_per_resource) * kStackBytes / kKiB;
-  return register_kib(c, resource) + static_cast<double>(simt.warp * simt.warps) * kNodeBytes / kKiB;
+  const double lane = kNodeBytes + (simt.prefetch == SimtConfig::Prefetch::kTreelet ? kVoteBytes : 0);
+  return register_kib(c, resource) + static_cast<double>(simt.warp * simt.warps) * lane / kKiB;
 }
 
 /// Bytes beside a record for its buffer of hits, and for what waits for a later round.

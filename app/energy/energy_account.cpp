@@ -89,13 +89,19 @@ class EnergyAccount::Sum {
     for (const UnitKindRow& row : kUnitKinds) {
       // The energy of a test by a program is that of its instructions.
       const std::uint64_t by_program = row.kind == UnitKind::kProcedural ? of.tests.programs : 0;
-      parts_.units[row.kind].add(static_cast<double>(of.tests.*row.tests - by_program), pj(energy_of(row.kind)));
+      const std::uint64_t by_silhouette = row.kind == UnitKind::kBundle ? of.tests.silhouettes : 0;
+      parts_.units[row.kind].add(static_cast<double>(of.tests.*row.tests - by_program - by_silhouette),
+                                 pj(energy_of(row.kind)));
     }
+    parts_.units[UnitKind::kBundle].add(static_cast<double>(of.tests.silhouettes), pj(Cost::kSilhouetteTest));
+    parts_.units[UnitKind::kBundle].add(static_cast<double>(of.tests.edges), pj(Cost::kEdgeTest));
     if (of.tests.programs > 0) instructions(of.tests);
     access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
     access(EnergyPart::kRayStore, static_cast<double>(of.buffer_bytes), a_.rays_kib_);
     access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(of.packet_rays), a_.collections_kib_);
     access(EnergyPart::kShapeBuffers, kPlaceBytes * static_cast<double>(of.shape_reads), a_.buffer_kib_);
+    if (of.prefetch_votes > 0)
+      parts_[EnergyPart::kShapeBuffers].add(static_cast<double>(of.prefetch_votes), pj(Cost::kPrefetchVote));
     if (of.stack_bytes > 0)
       access(EnergyPart::kStacks, static_cast<double>(of.stack_bytes),
              of.warps ? register_kib(a_.c_, number) : a_.rays_kib_);
@@ -179,6 +185,7 @@ ringbus::EnergyEvents energy_events(const report::Report& r) {
     if (resource.stack) of.stack_bytes = resource.stack->pushed_bytes + resource.stack->popped_bytes;
     of.warps = resource.units && resource.units->warps;
     if (of.warps) of.stack_bytes += 2 * resource.units->warps->counts.packed_bytes;
+    if (of.warps) of.prefetch_votes = resource.units->warps->counts.votes;
   }
   // The report has these of all resources together.
   if (!out.resources.empty() && r.nearest) out.resources.front().buffer_bytes = r.nearest->counts.moved_bytes();

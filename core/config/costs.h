@@ -20,6 +20,11 @@ inline CostValue profile_value(const Config& config, Cost cost) {
   return {0, Basis::kAssumed, ""};
 }
 
+/// The configuration's own number of a part of the area, or the profile's.
+inline float own_or_profile(const Config& config, Cost cost) {
+  return config.area.own[cost_index(cost)].value_or(profile_value(config, cost).value);
+}
+
 }  // namespace cost_detail
 
 /// The number of a row for this machine: the configuration's own, or the profile's. Without a profile the number is
@@ -39,6 +44,13 @@ inline CostValue cost_value(const Config& config, Cost cost) {
     return {value_of(UnitKind::kProcedural), Basis::kAssumed, "a sphere, as a procedural primitive"};
   if (box && config.bvh.elements == Elements::kOrientedBoxes)
     return {value.value + value_of(UnitKind::kTransform), Basis::kAssumed, "a box and a transform: boxes are oriented"};
+  if (cost == row(UnitKind::kBundle) && !energy && config.bundles.form == BundlesConfig::Form::kSilhouette) {
+    constexpr float kEdgesAtOnce = 6;  // a box seen at a corner has six
+    const float edges = config.bundles.edges == BundlesConfig::Edges::kParallel ? kEdgesAtOnce : 1;
+    const auto of = [&](Cost part) { return cost_detail::own_or_profile(config, part); };
+    return {of(Cost::kSilhouetteUnit) + edges * of(Cost::kEdgeUnit), Basis::kAssumed,
+            "area.silhouette and area.edge: bundles are tested by silhouettes"};
+  }
   return value;
 }
 

@@ -137,6 +137,7 @@ constexpr Row kRows[] = {
     {"cull_planes.depth", kPlanes},
     {"bundles.form", kBundles},
     {"bundles.edges", kBundles},
+    {"bundles.edges", kSilhouettes},
     {"bundles.edges", kCycle},
     {"bundles.order", kBundles},
     {"bundles.strict", kBundles},
@@ -163,6 +164,12 @@ constexpr Row kRows[] = {
     {"primitives", kObjects},
     {"programs", kObjects},
     {"testers.decoder", kCycle},
+    {"testers.reciprocal", kCycle},
+    {"energy.silhouette", kSilhouettes},
+    {"energy.edge", kSilhouettes},
+    {"area.silhouette", kSilhouettes},
+    {"area.edge", kSilhouettes},
+    {"energy.prefetch_vote", kPrefetchesTreelets},
     {"testers.simd", kCycle},
     {"testers.simd.map", kVectors},
     {"testers.simd.reformat_cycles", kVectors},
@@ -178,6 +185,9 @@ constexpr Row kRows[] = {
     {"testers.simt.repack_rays_per_cycle", kWarps},
     {"testers.simt.idle_lanes", kWarps},
     {"testers.simt.repack_rays_per_cycle", kRepacks},
+    {"testers.simt.prefetch", kWarps},
+    {"testers.simt.prefetch_rays", kPrefetchesTreelets},
+    {"testers.simt.vote_cycles", kPrefetchesTreelets},
     {"testers.contexts", kCycle},
     {"testers.contexts", kPackets},
     {"testers.window", kCycle},
@@ -328,6 +338,8 @@ constexpr const Condition* condition_of(UnitKind kind) {
       return &kNearest;
     case UnitKind::kDecoder:
       return &kPackedLeaves;
+    case UnitKind::kReciprocal:
+      return &kBundles;
     default:  // every scene puts the others to use
       return nullptr;
   }

@@ -231,6 +231,9 @@ inline constexpr Condition kPlanes{[](const C& c, const S&) { return c.cull_plan
                                    "there are no cull planes"};
 inline constexpr Condition kPlaneUnits{has_planes, "no node has cull planes"};
 inline constexpr Condition kBundles{[](const C& c, const S&) { return has_bundles(c); }, "there are no bundles"};
+inline constexpr Condition kSilhouettes{
+    [](const C& c, const S&) { return has_bundles(c) && c.bundles.form == BundlesConfig::Form::kSilhouette; },
+    "bundles are not tested by silhouettes"};
 inline constexpr Condition kBundleUnits{[](const C& c, const S&) {
                                           return has_bundles(c) &&
                                                  c.testers.bundle_blocks != TestersConfig::BundleBlocks::kShared;
@@ -262,6 +265,13 @@ inline constexpr Condition kRepacks{[](const C& c, const S&) {
                                       });
                                     },
                                     "rays are not packed into new warps"};
+inline constexpr Condition kPrefetchesTreelets{[](const C& c, const S&) {
+                                                 return any_testers(c, [](const TestersConfig& one) {
+                                                   return one.simt.warp > 0 &&
+                                                          one.simt.prefetch == SimtConfig::Prefetch::kTreelet;
+                                                 });
+                                               },
+                                               "warps do not prefetch treelets"};
 inline constexpr Condition kOwnCaches{[](const C& c, const S&) { return c.memory.l1_kib > 0; },
                                       "resources have no caches of their own"};
 inline constexpr Condition kEndFlags{

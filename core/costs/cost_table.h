@@ -2,91 +2,12 @@
 
 #include <array>
 #include <cstddef>
-#include <cstdint>
 #include <string_view>
 
+#include "core/costs/cost_row.h"
 #include "core/types/unit_kind.h"
 
 namespace carousel {
-
-// The joules of an event and the square millimetres of a part. The keys of `energy` and `area`, the report, its pages
-// and the documentation iterate over this one table. The profiles are never mixed: every number of a run is of one
-// process, apart from the numbers that the configuration gives itself.
-
-/// A process: 45 nm and 0.9 V with DDR3, or 7 nm with GDDR6.
-enum class CostProfile : std::uint8_t { kNone, kN45, kN7 };
-
-enum class Cost : std::uint8_t {
-  // Joules of a test, in the order of UnitKind.
-  kBoxTest,
-  kTriangleTest,
-  kPlaneTest,
-  kBundleTest,
-  kTransform,
-  kProceduralTest,
-  kAnyHitTest,
-  kMicromapTest,
-  kHitBufferStep,
-  kDecode,
-  // Joules of other events.
-  kHop,
-  kWire,
-  kSram8,
-  kSram32,
-  kSram1024,
-  kDram,
-  kDramActivation,
-  kHbm,
-  kHbmActivation,
-  kShade,
-  kProduct,
-  kLookup,
-  kSimpleInstruction,
-  kProductInstruction,
-  kDivideInstruction,
-  kBranchInstruction,
-  // Areas of a unit, in the order of UnitKind.
-  kBoxUnit,
-  kTriangleUnit,
-  kPlaneUnit,
-  kBundleUnit,
-  kTransformUnit,
-  kProceduralUnit,
-  kAnyHitUnit,
-  kMicromapUnit,
-  kHitBufferUnit,
-  kDecoderUnit,
-  // Areas of other parts.
-  kSramArea,
-  kPortArea,
-  kShaderArea,
-  kWirePitch,
-};
-
-/// The support of a number: it stands in the source; it is computed from numbers of the source by the rule that the
-/// source's text names; or nothing that was found supports it.
-enum class Basis : std::uint8_t { kPublished, kDerived, kAssumed };
-
-struct CostValue {
-  float value;
-  Basis basis;
-  std::string_view source;
-};
-
-struct CostRow {
-  Cost cost;
-  std::string_view section;  ///< section of the configuration: energy or area
-  std::string_view key;
-  const char* unit;
-  const char* meaning;  ///< a sentence
-  CostValue n45, n7;
-};
-
-namespace cost_sources {
-using std::string_view;
-inline constexpr string_view kHorowitz = "Horowitz, ISSCC 2014";
-inline constexpr string_view kHbm2 = "HBM2: O'Connor et al., MICRO 2017";
-}  // namespace cost_sources
 
 /// The one table. A product and a sum of 32-bit numbers are 3.7 and 0.9 pJ at 45 nm (Horowitz, ISSCC 2014), and 1.31
 /// and 0.4 pJ at 7 nm (Jouppi et al., ISCA 2021). A unit of 28 nm (GauTracer, HPCA 2026, Table III) is scaled by
@@ -117,9 +38,9 @@ inline constexpr auto kCostTable = [] {
        kE,
        "bundle",
        "pJ",
-       "A test of a bundle.",
-       {49.8f, kAssumed, "6 edges of 2 products and a sum; Horowitz, ISSCC 2014"},
-       {18.1f, kAssumed, "6 edges of 2 products and a sum; Jouppi et al., ISCA 2021, Table 2"}},
+       "A test of a bundle by intervals, without its divisions.",
+       {29, kAssumed, "6 products, 6 sums, 10 comparisons, as a box; Horowitz, ISSCC 2014"},
+       {10, kAssumed, "6 products, 6 sums, 10 comparisons, as a box; Jouppi et al., ISCA 2021, Table 2"}},
       {Cost::kTransform, kE, "transform", "pJ", "A ray brought to model space.",
        kOps(80.1f, "18 products, 15 sums; Horowitz, ISSCC 2014"),
        kOps(29.6f, "18 products, 15 sums; Jouppi et al., ISCA 2021, Table 2")},
@@ -158,6 +79,13 @@ inline constexpr auto kCostTable = [] {
        "A block of compressed triangles decoded.",
        {14.4f, kAssumed, "48 sums of 32-bit integers, a shift as two; Horowitz, ISSCC 2014"},
        {4.3f, kAssumed, "48 sums of 32-bit integers, a shift as two; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kReciprocal,
+       kE,
+       "reciprocal",
+       "pJ",
+       "A division for a bundle.",
+       {18.4f, kAssumed, "four products and sums, as of two steps of Newton; Horowitz, ISSCC 2014"},
+       {6.84f, kAssumed, "four products and sums, as of two steps of Newton; Jouppi et al., ISCA 2021, Table 2"}},
       {Cost::kHop,
        kE,
        "hop",
@@ -268,6 +196,27 @@ inline constexpr auto kCostTable = [] {
        "A branch likewise.",
        {5.9f, kAssumed, "as a simple instruction"},
        {2.4f, kAssumed, "as a simple instruction"}},
+      {Cost::kSilhouetteTest,
+       kE,
+       "silhouette",
+       "pJ",
+       "A test of a bundle by the silhouette of a box, without its edges.",
+       {17.3f, kAssumed, "6 sums, 3 products and 6 comparisons, of ways and of the range; Horowitz, ISSCC 2014"},
+       {6.6f, kAssumed, "6 sums, 3 products and 6 comparisons, likewise; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kEdgeTest,
+       kE,
+       "edge",
+       "pJ",
+       "A test of a bundle against an edge of a silhouette.",
+       {8.3f, kAssumed, "2 products and a comparison, as a sum; Horowitz, ISSCC 2014"},
+       {3.02f, kAssumed, "2 products and a comparison, as a sum; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kPrefetchVote,
+       kE,
+       "prefetch_vote",
+       "pJ",
+       "A vote of a ray for the treelet in which its next node is.",
+       {11.8f, kAssumed, "two sums and 64 bits of 8 KB; Horowitz, ISSCC 2014"},
+       {8.3f, kAssumed, "two sums (Jouppi et al., ISCA 2021, Table 2), and 64 bits of 8 KB"}},
       {Cost::kBoxUnit,
        kA,
        "box",
@@ -287,9 +236,11 @@ inline constexpr auto kCostTable = [] {
        kA,
        "bundle",
        "mm2",
-       "A unit that tests bundles.",
-       {0.252f, kAssumed, "as two box units, by its products"},
-       {0.0146f, kAssumed, "as two box units, by its products"}},
+       "A unit that tests bundles by intervals. By silhouettes it is one of area.silhouette, with an area.edge for "
+       "each "
+       "edge that it tests at once.",
+       {0.126f, kAssumed, "as a box unit, by its products"},
+       {0.0073f, kAssumed, "as a box unit, by its products"}},
       {Cost::kTransformUnit,
        kA,
        "transform",
@@ -327,6 +278,13 @@ inline constexpr auto kCostTable = [] {
        "A unit that decodes compressed triangles.",
        {0.0126f, kAssumed, "a tenth of a box unit: 12 integer sums and shifts a cycle"},
        {0.00073f, kAssumed, "a tenth of a box unit: 12 integer sums and shifts a cycle"}},
+      {Cost::kReciprocalUnit,
+       kA,
+       "reciprocal",
+       "mm2",
+       "A unit that divides for bundles.",
+       {0.084f, kAssumed, "two thirds of a box unit: four products, as of two steps of Newton"},
+       {0.0049f, kAssumed, "two thirds of a box unit: four products, as of two steps of Newton"}},
       {Cost::kSramArea,
        kA,
        "sram",
@@ -355,6 +313,20 @@ inline constexpr auto kCostTable = [] {
        "The place that a wire of a link takes, beside the next one.",
        {0.28f, kAssumed, "twice the least pitch of a metal in the middle"},
        {0.08f, kAssumed, "twice the least pitch of a metal in the middle"}},
+      {Cost::kSilhouetteUnit,
+       kA,
+       "silhouette",
+       "mm2",
+       "The part of a unit that tests bundles by silhouettes which does not test edges.",
+       {0.063f, kAssumed, "half of a box unit, by its products"},
+       {0.0037f, kAssumed, "half of a box unit, by its products"}},
+      {Cost::kEdgeUnit,
+       kA,
+       "edge",
+       "mm2",
+       "The part of it that tests an edge: one with bundles.edges: serial, six with parallel.",
+       {0.042f, kAssumed, "a third of a box unit, by its products"},
+       {0.0024f, kAssumed, "a third of a box unit, by its products"}},
   });
 }();
 

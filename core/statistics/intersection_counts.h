@@ -12,6 +12,7 @@ struct IntersectionCounts {
   std::uint64_t full_inversions = 0, extra_box_hits = 0, micromap_lookups = 0, micromap_known = 0, buffer_steps = 0,
                 decoded = 0;
   std::uint64_t programs = 0, program_cycles = 0;
+  std::uint64_t silhouettes = 0, edges = 0, reciprocals = 0;
   std::uint64_t simple_instructions = 0, product_instructions = 0, divide_instructions = 0, branch_instructions = 0;
 
   static constexpr auto counters() {
@@ -24,6 +25,14 @@ struct IntersectionCounts {
                 "triangles that a ray met in 32 bits and whose distance was computed in 64, with accuracy.triangle: "
                 "watertight"},
         Counter{"bundle", &C::bundle, "tests", "tests of a bundle of rays against a box, or the box of a primitive"},
+        Counter{"silhouettes", &C::silhouettes, "tests",
+                "those of the bundles' tests that were made by the silhouette of a box", Shown::kBundles},
+        Counter{"edges", &C::edges, "edges", "edges of silhouettes that bundles were tested against", Shown::kBundles},
+        Counter{
+            "reciprocals", &C::reciprocals, "divisions",
+            "divisions for bundles: six for the directions of one that is tested by intervals at a node, and one for "
+            "the distance of each box to which a bundle goes on by its silhouette",
+            Shown::kBundles},
         Counter{"transforms", &C::transforms, "tests", "transformations of a ray from world to model space"},
         Counter{"transforms_in_double", &C::transforms_in_double, "tests",
                 "those of the transformations that are made in 64 bits because the instance's matrix is nearly "

@@ -8,7 +8,8 @@ namespace carousel {
 struct WarpCounts {
   std::uint64_t warps = 0, rays = 0, steps = 0, tested = 0, box_steps = 0, box_tested = 0, leaf_steps = 0,
                 leaf_tested = 0, helped = 0, lane_cycles = 0, ray_cycles = 0, lines_wanted = 0, lines_read = 0,
-                packing = 0, packed_bytes = 0, spilled_bytes = 0, refilled_bytes = 0;
+                packing = 0, packed_bytes = 0, spilled_bytes = 0, refilled_bytes = 0, votes = 0, prefetches = 0,
+                lines_prefetched = 0, lines_prefetched_used = 0;
 
   static constexpr auto counters() {
     using C = WarpCounts;
@@ -31,6 +32,10 @@ struct WarpCounts {
                 "entries in the registers of stacks that were moved from lane to lane"},
         Counter{"spilled_bytes", &C::spilled_bytes, "bytes", "entries of stacks that were written to memory"},
         Counter{"refilled_bytes", &C::refilled_bytes, "bytes", "entries of stacks that were read back"},
+        Counter{"votes", &C::votes, "rays", "rays whose next node was in another treelet, with prefetch: treelet"},
+        Counter{"prefetches", &C::prefetches, "treelets", "treelets that were chosen, likewise"},
+        Counter{"lines_prefetched", &C::lines_prefetched, "lines", "lines of these that were not there and were read"},
+        Counter{"lines_prefetched_used", &C::lines_prefetched_used, "lines", "those of them that lanes then asked for"},
     };
   }
   friend bool operator==(const WarpCounts&, const WarpCounts&) = default;

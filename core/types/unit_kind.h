@@ -29,12 +29,13 @@ enum class UnitKind : std::uint8_t {
   kAnyHit,
   kMicromap,
   kHitBuffer,
-  kDecoder
+  kDecoder,
+  kReciprocal
 };
 
 /// The place of a kind in the order of a visit's tests.
 enum class Stage : std::uint8_t {
-  kBundle,     ///< bundles of rays first
+  kBundle,     ///< bundles of rays first, and the divisions that their tests need
   kTransform,  ///< then the rays that are left go to model space
   kNode,       ///< at a node, boxes and planes
   kPrimitive,  ///< at a leaf, primitives of all kinds side by side
@@ -85,6 +86,10 @@ inline constexpr auto kUnitKinds = std::to_array<UnitKindRow>({
     {UnitKind::kDecoder, "decoder", "decoder", "decoded_blocks",
      "Units that decode blocks of triangles, with bvh.leaves: blocks. Each test is a block.", 1, 4, 8,
      &IntersectionCounts::decoded, Stage::kDecode, Shown::kBlocks},
+    {UnitKind::kReciprocal, "reciprocal", "reciprocal", "reciprocals",
+     "Units that divide for bundles: for their directions, ahead of tests by intervals, and for the distance of a box, "
+     "behind tests by silhouettes.",
+     1, 1, 17, &IntersectionCounts::reciprocals, Stage::kBundle, Shown::kBundles},
 });
 
 constexpr std::size_t unit_index(UnitKind kind) {

@@ -102,7 +102,7 @@ struct EnergyParts {
 template <class V>
 void describe(V& v, const EnergyParts& r) {
   for (const UnitKindRow& row : kUnitKinds)
-    if (row.kind == UnitKind::kMicromap)  // reports from before there were any have none
+    if (row.kind == UnitKind::kMicromap || row.kind == UnitKind::kReciprocal)  // older reports have none
       v.section_if(r.units[row.kind].events > 0, row.work, r.units[row.kind], row.meaning);
     else
       v.section(row.work, r.units[row.kind], row.meaning);

@@ -34,6 +34,9 @@ struct SimtConfig {
   enum class Compaction { kNone, kRepack } compaction = Compaction::kNone;
   std::int64_t repack_rays_per_cycle = 8;
   enum class IdleLanes { kWait, kHelp } idle_lanes = IdleLanes::kWait;
+  enum class Prefetch { kNone, kTreelet } prefetch = Prefetch::kNone;
+  std::int64_t prefetch_rays = 2;
+  std::int64_t vote_cycles = 16;
 
   friend bool operator==(const SimtConfig&, const SimtConfig&) = default;
 };
@@ -65,6 +68,11 @@ inline constexpr auto kEnumNames<Dispatch> = [] {
 }();
 template <>
 inline constexpr std::string_view kAddedAs<Dispatch> = "dispatch";
+template <>
+inline constexpr auto kEnumNames<SimtConfig::Prefetch> = [] {
+  using enum SimtConfig::Prefetch;
+  return names<SimtConfig::Prefetch>({{kNone, "none"}, {kTreelet, "treelet"}});
+}();
 
 struct TestersConfig {
   PerUnit<TesterUnits> units = default_tester_units();
@@ -206,6 +214,14 @@ void describe(V& v, SimtConfig& c) {
   v.choice(
       "idle_lanes", c.idle_lanes,
       "Lanes whose rays have ended wait; or they help, and take nodes from the stacks of other rays of their warp.");
+  v.choice(
+      "prefetch", c.prefetch,
+      "Lines of shape data are read when a lane asks for them; or with treelet, while the port is idle, also those "
+      "of the treelet in which the next nodes of most rays in warps are. Needs bvh.treelets.bytes.");
+  v.field("prefetch_rays", c.prefetch_rays, IntRange{1, 1 << 16}, "rays",
+          "The least number of rays in warps whose next node is in a treelet that is prefetched.");
+  v.field("vote_cycles", c.vote_cycles, IntRange{1, 10'000}, "cycles",
+          "The time that the prefetcher takes to find the treelet of the most rays.");
 }
 
 template <class V>

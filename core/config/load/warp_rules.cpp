@@ -40,6 +40,9 @@ class WarpRules {
       breach("idle_lanes",
              "no ray of a warp that is packed anew for each step has ended; expected wait, or "
              "compaction: none; found help");
+    if (simt.prefetch == SimtConfig::Prefetch::kTreelet && c.bvh.treelets.bytes == 0)
+      breach("prefetch",
+             "the tree is not cut into treelets; expected none, or bvh.treelets.bytes above 0; found treelet");
     if (of.simd.lanes > 1)
       breach_(
           testers + ".simd.lanes",

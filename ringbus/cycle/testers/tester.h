@@ -216,13 +216,18 @@ class Tester {
     const UnitBank::Reservation own = bank.reserve(before.first, tests);
     return {own.first, before.last > before.first ? std::max(own.last, before.last + bank.latency()) : own.last};
   }
-  /// Tests that wait for the answers to the first begin with the first of these.
+  /// Tests that wait for the answers to the first begin with the first of these, divisions for directions come ahead of
+  /// the first, and those for distances behind the last.
   UnitBank::Reservation bundle_tests(const UnitBank::Reservation& read, const BundlePasses& passes) {
     using Blocks = TestersConfig::BundleBlocks;
     const UnitKind kind = blocks_ == Blocks::kShared ? UnitKind::kBox : UnitKind::kBundle;
     const std::uint64_t first = blocks_ == Blocks::kPairs ? passes.at_once : passes.first;
     passes_[kind] += first + passes.second;
-    return tested(banks_[kind], tested(banks_[kind], read, first), passes.second);
+    passes_[UnitKind::kReciprocal] += std::uint64_t{passes.divided_before} + passes.divided_after;
+    UnitBank& divider = banks_[UnitKind::kReciprocal];
+    const UnitBank::Reservation divided = tested(divider, read, passes.divided_before);
+    return tested(divider, tested(banks_[kind], tested(banks_[kind], divided, first), passes.second),
+                  passes.divided_after);
   }
   Cycle boxes(const UnitBank::Reservation& moved, const IntersectionCounts& counts, const TestedRays& of) {
     UnitBank &box = banks_[UnitKind::kBox], &plane = banks_[UnitKind::kPlane];

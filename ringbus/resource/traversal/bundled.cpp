@@ -151,16 +151,23 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   const bool stays_out = enters && !inside;
   const accel::BundleRecord& bundle = inside ? *inside : store.bundle(local.slot);
   accel::BundleAnswer answer;
-  if (stays_out || split_.too_wide(bundle, node)) {
+  const bool untested = stays_out || split_.too_wide(bundle, node);
+  if (untested) {
     answer.undecided = static_cast<std::uint8_t>(boxes);
   } else {
     answer = accel::test_bundle(context_.accel, node, boxes, bundle, config_, counts);
     add_passes(answer, outcome.bundle_passes);
     counts_.edges += answer.edges;
+    if (answer.silhouettes)
+      outcome.bundle_passes.divided_after += static_cast<std::uint32_t>(std::popcount(answer.all));
+    else
+      outcome.bundle_passes.divided_before += accel::kDirectionDivisions;
   }
   if (returns_ && !packet.takes_reserve && answer.undecided != 0 && !stays_out)
     return give_back(packet, local, enters, outcome);
+  const std::uint64_t leaf_tests = counts_.leaf_tests;
   answer.undecided |= static_cast<std::uint8_t>(held_in_reach(direct, local, packet.key, counts, outcome));
+  if (counts_.leaf_tests > leaf_tests && (answer.silhouettes || untested)) divide_for_directions(counts, outcome);
   for (std::uint32_t lanes = answer.all; lanes != 0; lanes &= lanes - 1) {
     const int lane = std::countr_zero(lanes);
     packet.nearest[lane] = std::min(packet.nearest[lane], answer.entry[lane]);
@@ -186,6 +193,12 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   local.change = (enters ? 0 : std::popcount(together)) - 1;
   if (enters && together != 0) descend_into_instance(packet, rays, *inside, together);
   add_visit(counts_, rays.size(), node.count, std::popcount(answer.all), std::popcount(answer.undecided));
+}
+
+/// Primitives are tested by intervals.
+void BundledTraversal::divide_for_directions(IntersectionCounts& counts, TestOutcome& outcome) {
+  counts.reciprocals += accel::kDirectionDivisions;
+  outcome.bundle_passes.divided_before += accel::kDirectionDivisions;
 }
 
 void BundledTraversal::add_passes(const accel::BundleAnswer& answer, BundlePasses& passes) const {

@@ -63,6 +63,7 @@ class BundledTraversal final : public TraversalMethod {
   // Where bundles go on.
   void test_bundles(Packet& packet, LocalRays& local, TestOutcome& outcome);
   void test_bundle(Packet& packet, LocalBundle& local, IntersectionCounts& counts, TestOutcome& outcome);
+  static void divide_for_directions(IntersectionCounts& counts, TestOutcome& outcome);
   void add_passes(const accel::BundleAnswer& answer, BundlePasses& passes) const;
   void give_back(Packet& packet, LocalBundle& local, bool entered, TestOutcome& outcome);
   void eject_singles(Packet& packet, const LocalRays& local, TestOutcome& outcome);

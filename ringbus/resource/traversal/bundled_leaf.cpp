@@ -22,7 +22,9 @@ void BundledTraversal::test_leaf(Packet& packet, LocalRays& local, TestOutcome& 
   for (const LocalBundle& bundle : bundles_) {
     const std::span<const std::uint32_t> rays = context_.store.rays_of(bundle.slot);
     packet.members[bundle.member].mask = 0;
+    const std::uint64_t leaf_tests = counts_.leaf_tests;
     const std::uint32_t met = in_reach(packet.key.ref, bundle, packet.key, counts, outcome);
+    if (counts_.leaf_tests > leaf_tests) divide_for_directions(counts, outcome);
     if (met == 0) {
       ++counts_.visits;
       counts_.visit_rays += rays.size();

@@ -19,10 +19,12 @@ struct AnyHitCall {
 /// Passes of a packet's bundles through the units that test them (US 11308683, FIG. 11 and 12): one a test, or one an
 /// edge of a silhouette.
 struct BundlePasses {
-  std::uint32_t first = 0;      ///< passes of the tests that are made at once
-  std::uint32_t second = 0;     ///< passes of the tests that the answers to the first call for
-  std::uint32_t at_once = 0;    ///< as `first`, where a pair of blocks makes both tests of a box at the same time
-  std::uint32_t regrouped = 0;  ///< rays that the builder then puts into new bundles
+  std::uint32_t first = 0;           ///< passes of the tests that are made at once
+  std::uint32_t second = 0;          ///< passes of the tests that the answers to the first call for
+  std::uint32_t at_once = 0;         ///< as `first`, where a pair of blocks makes both tests of a box at the same time
+  std::uint32_t divided_before = 0;  ///< divisions for directions, for which the first tests wait
+  std::uint32_t divided_after = 0;   ///< divisions for distances of boxes, which wait for the last tests
+  std::uint32_t regrouped = 0;       ///< rays that the builder then puts into new bundles
 };
 
 /// The cost of testing a packet at one resource. The pointer and the spans are valid until the resource's next test.

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <string>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
@@ -76,6 +77,29 @@ TEST(BundleSilhouette, OneAfterAnotherStopsAtTheFirstEdgeThatDecides) {
 TEST(BundleSilhouette, BothTestsCountTheirEdges) {
   EXPECT_EQ(test(towards({0, 0, 0}, {-4, -4, -4}), Order::kParallel).edges, 12);
   EXPECT_EQ(test(towards({0, 0, 0}, {-4, -4, -4}), Order::kAllHitFirst).edges, 6);
+}
+
+// Intervals divide for both ends of three directions at each node, silhouettes for the distance of a box that all hit.
+TEST(BundleSilhouette, DividesForDistancesAlone) {
+  Accel accel;
+  Node node;
+  set_child(node, 0, kUnit);
+  set_child(node, 1, {{2, 2, 2}, {3, 3, 3}});
+  const std::vector<Ray> hits = towards({0, 0, 0}, {-4, 0.5f, 0.25f}), misses = towards({0, 9, 0}, {-4, 9, 9});
+  for (const auto& [rays, hit] : {std::pair{hits, 1u}, std::pair{misses, 0u}}) {
+    for (const auto form : {BundlesConfig::Form::kInterval, BundlesConfig::Form::kSilhouette}) {
+      BundlesConfig config;
+      config.form = form;
+      IntersectionCounts counts;
+      const BundleAnswer answer = test_bundle(accel, node, 3, record_of(rays), config, counts);
+      const bool silhouettes = form == BundlesConfig::Form::kSilhouette;
+      EXPECT_EQ(answer.all, hit);
+      EXPECT_EQ(answer.silhouettes, silhouettes);
+      EXPECT_EQ(counts.silhouettes, silhouettes ? counts.bundle : 0u);
+      EXPECT_EQ(counts.edges, answer.edges);
+      EXPECT_EQ(counts.reciprocals, silhouettes ? hit : 6u);
+    }
+  }
 }
 
 TEST(BundleSilhouette, NeedsNoEdgeForBoxesBehindOrBeyondTheRange) {

@@ -4,6 +4,7 @@
 
 #include <gmock/gmock.h>
 
+#include "core/system/error.h"
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::warps_test {
@@ -74,6 +75,31 @@ TEST_F(Warps, ChangeNoHitAndCostTime) {
   // What is spilled goes over the wires of requests to the L2, and is counted there.
   EXPECT_GT(bytes(shallow, "shape requests"),
             bytes(warps, "shape requests") + sum(shallow, "spilled_bytes") - sum(warps, "spilled_bytes"));
+}
+
+// What is prefetched goes over the same port and wires, takes places of the buffer, and changes no hit.
+TEST_F(Warps, PrefetchTreeletsForJoulesBytesAndArea) {
+  const Sets cut{"bvh.treelets.bytes=1024"};
+  Sets ahead = cut;
+  ahead.emplace_back("testers.simt.prefetch=treelet");
+  const Json none = report(kMachine, cut), all = report(kMachine, ahead);
+  ahead.emplace_back("testers.simt.prefetch_rays=1000");
+  const Json few = report(kMachine, ahead);
+  EXPECT_EQ(all["digest"], none["digest"]);
+  EXPECT_NE(all["engine"]["cycles"], none["engine"]["cycles"]);
+  EXPECT_EQ(sum(none, "votes") + sum(none, "lines_prefetched"), 0u);
+  EXPECT_GT(sum(all, "lines_prefetched_used"), 0u);
+  EXPECT_LT(sum(all, "lines_prefetched_used"), sum(all, "lines_prefetched"));
+  EXPECT_GT(sum(all, "votes"), sum(all, "prefetches"));
+  EXPECT_GT(bytes(all, "shape data"), bytes(none, "shape data"));
+  // Nothing is chosen: the votes alone are paid for.
+  EXPECT_EQ(sum(few, "prefetches"), 0u);
+  EXPECT_EQ(few["engine"]["cycles"], none["engine"]["cycles"]);
+  const auto pj = [](const Json& r) { return r["energy"]["parts"]["shape_buffers"]["joules"].get<double>() * 1e12; };
+  EXPECT_NEAR(pj(few) - pj(none), 11.8 * static_cast<double>(sum(few, "votes")), 1);
+  const auto mm2 = [](const Json& r) { return r["area"]["parts"]["stacks"]["mm2"].get<double>(); };
+  EXPECT_NEAR(mm2(few) - mm2(none), 2 * 16 * 8 * 8 / 1024.0 * 0.00456, 1e-7);
+  EXPECT_THROW(report(kMachine, {"testers.simt.prefetch=treelet"}), ConfigError);
 }
 
 TEST_F(Warps, AreTheSameOnAnyThreads) {

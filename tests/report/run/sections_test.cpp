@@ -34,9 +34,9 @@ TEST(ReportSections, EveryKindOfUnitStandsUnderItsName) {
     EXPECT_EQ(without.contains(row.name), row.shown == Shown::kAlways) << row.name;
   }
   // The order of the table of unit kinds.
-  EXPECT_EQ(keys(with),
-            (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural", "any_hit",
-                                      "micromap", "hit_buffer", "decoder", "dispatch_busy", "dispatch_idle"}));
+  EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural",
+                                                  "any_hit", "micromap", "hit_buffer", "decoder", "reciprocal",
+                                                  "dispatch_busy", "dispatch_idle"}));
 }
 
 TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
@@ -59,6 +59,9 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
                                                   "triangle",
                                                   "refined",
                                                   "bundle",
+                                                  "silhouettes",
+                                                  "edges",
+                                                  "reciprocals",
                                                   "transforms",
                                                   "transforms_in_double",
                                                   "inversions",

@@ -13,6 +13,7 @@ TestersConfig bundle_testers() {
   c.units[UnitKind::kBox] = {8, 1, 4};
   c.units[UnitKind::kBundle] = {1, 1, 3};
   c.units[UnitKind::kTriangle] = {2, 1, 5};
+  c.units[UnitKind::kReciprocal] = {1, 2, 6};
   return c;
 }
 
@@ -33,6 +34,24 @@ TEST(BundleUnits, OnePassAfterTheOther) {
 TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
   Tester tester(bundle_testers());
   EXPECT_EQ(tester.strip(0, counts(0, 8), 1, {.first = 40}), 39u + 3u);
+}
+
+// By intervals the first test waits for the first division, and the last for the last: six, one in two cycles.
+TEST(BundleUnits, IntervalsWaitForDivisions) {
+  Tester tester(bundle_testers());
+  EXPECT_EQ(tester.strip(0, counts(0, 2), 1, {.first = 2, .divided_before = 6}), 5u * 2u + 6u + 3u);
+  EXPECT_EQ(tester.bank(UnitKind::kReciprocal).busy(), 12u);
+  EXPECT_EQ(tester.bank(UnitKind::kBundle).busy(), 2u);
+  // Many tests outlast the divisions, and begin with the first.
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 20), 1, {.first = 20, .divided_before = 6}), 6u + 19u + 3u);
+}
+
+// By silhouettes only the distance of a box that is entered is divided, behind its test.
+TEST(BundleUnits, SilhouettesDivideForDistancesAlone) {
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 2), 1, {.first = 2}), 1u + 3u);
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 2), 1, {.first = 2, .divided_after = 1}), 1u + 3u + 6u);
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 2), 1, {.first = 1, .second = 1, .divided_after = 2}),
+            3u + 3u + 2u + 6u);
 }
 
 TEST(BundleUnits, ASecondTestWaitsForTheAnswerToTheFirst) {

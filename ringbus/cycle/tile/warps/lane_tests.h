@@ -62,6 +62,9 @@ class LaneTests {
 
   /// The time of the next read or answer, after `now`.
   Cycle next(Cycle now) const { return std::min(reads_.next(now), tests_.empty() ? kNever : tests_.top().done); }
+  /// As LineReads says.
+  void read_ahead(const ShapeSpan& span) { reads_.read_ahead(span); }
+  void read_idle(Cycle now) { reads_.read_idle(now); }
   bool testing() const { return !tests_.empty(); }
   std::size_t in_test() const { return tests_.size(); }
   bool reading() const { return !reads_.idle(); }

@@ -3,6 +3,8 @@
 #include <cstdint>
 #include <deque>
 #include <unordered_map>
+#include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include "ringbus/cycle/shapes/shape_buffer.h"
@@ -34,26 +36,43 @@ class LineReads {
   /// Those who ask from now on do so apart.
   void end_group() { group_.clear(); }
 
+  /// From now on the lines of `span` are read while nobody asks for others; the last such span has been.
+  void read_ahead(const ShapeSpan& span) {
+    ahead_ = span.address / line_bytes_;
+    ahead_end_ = (span.address + span.bytes + line_bytes_ - 1) / line_bytes_;
+  }
+  bool reads_ahead() const { return ahead_ < ahead_end_; }
+  /// Looks lines of that span up, as far as the port is idle in this cycle, and reads those that are not there. Nobody
+  /// holds them when they have come, so that later ones may replace them.
+  void read_idle(Cycle now) {
+    if (!reads_ahead()) return;
+    begin_cycle(now);
+    for (; queue_.empty() && reads_ahead() && in_cycle_ < per_cycle_; ++in_cycle_, ++ahead_) {
+      if (shapes_.has(span_of(ahead_))) continue;
+      const std::uint32_t user = free_read();
+      reads_[user].line = ahead_;
+      reads_[user].ahead = true;
+      ++read_ahead_;
+      early_.insert(ahead_);
+      if (shapes_.take(user, {span_of(ahead_), {}}, now)) arrive(user, now);
+    }
+  }
+
   /// The time of the next read; kNever if nothing waits for the port.
-  Cycle next(Cycle now) const { return queue_.empty() ? kNever : now + 1; }
+  Cycle next(Cycle now) const { return queue_.empty() && !reads_ahead() ? kNever : now + 1; }
   /// Reads as many lines as the port takes in this cycle. True if it read any.
   bool read(Cycle now) {
-    if (now != at_) {
-      at_ = now;
-      in_cycle_ = 0;
-    }
+    begin_cycle(now);
     bool any = false;
     for (; !queue_.empty() && in_cycle_ < per_cycle_; ++in_cycle_) {
       const std::uint32_t user = queue_.front();
       queue_.pop_front();
       ++read_;
       any = true;
-      if (shapes_.take(
-              user,
-              {ShapeSpan{reads_[user].line * line_bytes_, static_cast<std::uint32_t>(line_bytes_), 0, reads_[user].row},
-               {}},
-              now))
-        arrive(user, now);
+      const std::uint64_t line = reads_[user].line, misses = shapes_.counts().misses;
+      const bool here = shapes_.take(user, {span_of(line, reads_[user].row), {}}, now);
+      if (!early_.empty() && early_.erase(line) > 0) used_ahead_ += shapes_.counts().misses == misses;
+      if (here) arrive(user, now);
     }
     return any;
   }
@@ -70,14 +89,26 @@ class LineReads {
   bool idle() const { return reads_under_way_ == 0; }
   std::uint64_t wanted() const { return wanted_; }
   std::uint64_t read() const { return read_; }
+  std::uint64_t lines_ahead() const { return read_ahead_; }
+  /// Those of them that were there, or on their way, when somebody asked for them.
+  std::uint64_t used_ahead() const { return used_ahead_; }
 
  private:
   struct Read {
     std::uint64_t line = 0;
+    bool ahead = false;                                  // nobody has asked for it
     std::uint16_t row = accel::StructureDepths::kNoRow;  // of the first strip for which it was asked
     std::vector<std::uint32_t> tasks;
   };
 
+  ShapeSpan span_of(std::uint64_t line, std::uint16_t row = accel::StructureDepths::kNoRow) const {
+    return {line * line_bytes_, static_cast<std::uint32_t>(line_bytes_), 0, row};
+  }
+  void begin_cycle(Cycle now) {
+    if (now == at_) return;
+    at_ = now;
+    in_cycle_ = 0;
+  }
   /// False if the task has asked for this line already: a strip and its transform may share one.
   bool add(std::uint64_t line, std::uint32_t task, std::uint16_t row) {
     const auto [at, is_new] = group_.try_emplace(line, 0);
@@ -105,7 +136,7 @@ class LineReads {
   void arrive(std::uint32_t user, Cycle now) {
     here_.insert(here_.end(), reads_[user].tasks.begin(), reads_[user].tasks.end());
     reads_[user].tasks.clear();
-    --reads_under_way_;
+    if (!std::exchange(reads_[user].ahead, false)) --reads_under_way_;
     shapes_.release(user, now);
     free_.push_back(user);
   }
@@ -120,6 +151,9 @@ class LineReads {
   std::size_t reads_under_way_ = 0;
   Cycle at_ = kNever;
   std::uint64_t in_cycle_ = 0, wanted_ = 0, read_ = 0;
+  std::uint64_t ahead_ = 0, ahead_end_ = 0;  // lines
+  std::unordered_set<std::uint64_t> early_;  // lines that were read ahead and that nobody has asked for since
+  std::uint64_t read_ahead_ = 0, used_ahead_ = 0;
 };
 
 }  // namespace carousel::ringbus::cycle

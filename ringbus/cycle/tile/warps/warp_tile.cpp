@@ -27,6 +27,7 @@ WarpTile::WarpTile(ResourceId id, Machine& machine, const ShapeMemory& memory, c
       ended_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
       forming_(simt_),
+      prefetcher_(simt_, machine.accel.pieces.get(), store_.slots()),
       log_(simt_.warp),
       rays_(store_.slots(), Ray{{}, RayWalk(transforms_, settings.resource.collections.order), {}}),
       warps_(static_cast<std::size_t>(simt_.warps)),
@@ -41,7 +42,8 @@ WarpTile::WarpTile(ResourceId id, Machine& machine, const ShapeMemory& memory, c
 Cycle WarpTile::next() const {
   const Cycle started = starts_.empty() ? kNever : starts_.front().at;
   const Cycle formed = free_warps_.empty() ? kNever : std::max(forming_.next(), now_ + 1);
-  return std::min({tests_.next(now_), any_hit_.next(), new_rays_.next(), shapes_.next(), started, formed});
+  return std::min(
+      {tests_.next(now_), any_hit_.next(), new_rays_.next(), shapes_.next(), started, formed, prefetcher_.next()});
 }
 
 void WarpTile::run(Cycle end) {
@@ -62,6 +64,7 @@ void WarpTile::step(Cycle now) {
     more |= form_warps(now);
     more |= begin_warps(now);
   }
+  prefetch(now);
   hand_over(now);
   ledger_.enter(classify(), now);
 }
@@ -114,6 +117,16 @@ void WarpTile::take_entries(Cycle now) {
   shapes_.spill_answers().clear();
 }
 
+/// What nobody asks for in this cycle leaves the port to the treelet that was chosen.
+void WarpTile::prefetch(Cycle now) {
+  if (!prefetcher_.on()) return;
+  if (const accel::TreePieces::Piece* chosen = prefetcher_.choose(now))
+    tests_.read_ahead({chosen->address, chosen->bytes});
+  const bool reading = tests_.reads().reads_ahead();
+  tests_.read_idle(now);
+  if (reading && !tests_.reads().reads_ahead()) prefetcher_.read(now);
+}
+
 // ---- a ray's turns
 
 /// Finds the next strip of a ray, as far as the entries of its stack are at hand; asks for more where they are not.
@@ -126,9 +139,13 @@ WarpTile::Turn WarpTile::turn(std::uint32_t slot, Cycle now) {
   ray.waits_since = now;
   if (next) {
     ray.strip = *next;
+    prefetcher_.vote(slot, next->ref, now);
     return Turn::kStrip;
   }
-  if (registers_.beyond(slot) == 0) return Turn::kEnds;
+  if (registers_.beyond(slot) == 0) {
+    prefetcher_.leave(slot, now);
+    return Turn::kEnds;
+  }
   registers_.refill(slot, ray.walk, now);
   return Turn::kReads;
 }
@@ -241,6 +258,7 @@ ResourceAgent::Work WarpTile::work() const {
   Work out{tester_.busy_units(), tester_.busy_reads(), 0};
   read_energy(tester_, sink_.statistics(), shapes_.counts(), out);
   out.energy.warps = true;
+  out.energy.prefetch_votes = prefetcher_.counts().votes;
   // What is packed goes out of one lane and into another.
   out.energy.stack_bytes = ended_.stack().pushed_bytes + ended_.stack().popped_bytes + 2 * log_.counts().packed_bytes;
   return out;
@@ -256,6 +274,10 @@ TileResult WarpTile::result() const {
   WarpCounts& warps = t.warps.emplace(log_.counts());
   warps.lines_wanted = tests_.reads().wanted();
   warps.lines_read = tests_.reads().read();
+  warps.votes = prefetcher_.counts().votes;
+  warps.prefetches = prefetcher_.counts().prefetches;
+  warps.lines_prefetched = tests_.reads().lines_ahead();
+  warps.lines_prefetched_used = tests_.reads().used_ahead();
   warps.packing = forming_.packing();
   warps.spilled_bytes = registers_.spilled_bytes();
   warps.refilled_bytes = registers_.refilled_bytes();

@@ -17,6 +17,7 @@
 #include "ringbus/cycle/tile/warps/ended_rays.h"
 #include "ringbus/cycle/tile/warps/lane_tests.h"
 #include "ringbus/cycle/tile/warps/stack_registers.h"
+#include "ringbus/cycle/tile/warps/treelet_prefetcher.h"
 #include "ringbus/cycle/tile/warps/warp_forming.h"
 #include "ringbus/cycle/tile/warps/warp_log.h"
 #include "ringbus/protocol/machine.h"
@@ -91,6 +92,7 @@ class WarpTile final : public ResourceAgent {
   void take_new_rays(Cycle now);
   void take_answers(Cycle now);
   void take_entries(Cycle now);
+  void prefetch(Cycle now);
   // Warps, from their forming to their end.
   bool form_warps(Cycle now);
   bool begin_warps(Cycle now);
@@ -136,6 +138,7 @@ class WarpTile final : public ResourceAgent {
   EndedRays ended_;
   TransformAccount transforms_;
   WarpForming forming_;
+  TreeletPrefetcher prefetcher_;
   WarpLog log_;
 
   std::vector<Ray> rays_;  // by slot

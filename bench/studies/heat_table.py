@@ -1,0 +1,34 @@
+"""Maps of ratios over two axes as SVG: blue cells are above one, orange ones below, each with its number."""
+
+
+def colour(ratio):
+    """White at 1; the strongest colour from a factor of 2 on."""
+    share = min(abs(ratio - 1 if ratio > 1 else 1 / ratio - 1), 1.0)
+    full = (31, 119, 180) if ratio > 1 else (230, 120, 20)
+    return "#" + "".join(f"{round(255 - share * (255 - part)):02x}" for part in full)
+
+
+def heat_table(title, row_name, rows, column_name, columns, panels):
+    """`panels` is a list of names, each with the ratio of each row and column."""
+    cell, left, top, gap = 64, 84, 58, 44
+    width = left + len(panels) * (len(columns) * cell + gap)
+    height = top + len(rows) * 40 + 46
+    out = [f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' width='{width}' height='{height}' "
+           "font-family='sans-serif' font-size='12'>", "<rect width='100%' height='100%' fill='white'/>",
+           f"<text x='8' y='18' font-size='14' font-weight='bold'>{title}</text>",
+           f"<text x='8' y='{top - 8}'>{row_name}</text>"]
+    for index, (name, at) in enumerate(panels):
+        x0 = left + index * (len(columns) * cell + gap)
+        out.append(f"<text x='{x0}' y='{top - 10}' font-weight='bold'>{name}</text>")
+        for i, row in enumerate(rows):
+            y = top + i * 40
+            if index == 0:
+                out.append(f"<text x='{left - 8}' y='{y + 25}' text-anchor='end'>{row:,}</text>")
+            for j, column in enumerate(columns):
+                ratio = at[row, column]
+                out.append(f"<rect x='{x0 + j * cell}' y='{y}' width='{cell - 2}' height='38' fill='{colour(ratio)}' stroke='#999'/>"
+                           f"<text x='{x0 + j * cell + cell / 2 - 1}' y='{y + 24}' text-anchor='middle'>{ratio:.2f}</text>")
+        for j, column in enumerate(columns):
+            out.append(f"<text x='{x0 + j * cell + cell / 2}' y='{top + len(rows) * 40 + 16}' text-anchor='middle'>{column}</text>")
+        out.append(f"<text x='{x0}' y='{top + len(rows) * 40 + 34}'>{column_name}</text>")
+    return "\n".join(out + ["</svg>", ""])

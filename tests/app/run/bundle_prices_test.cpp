@@ -1,0 +1,73 @@
+// What tests of bundles cost by their form: joules of their operations and areas of their units, computed a second time
+// from the counts of the report and from numbers that stand here.
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/time/timed_run.h"
+
+namespace carousel::bundle_prices_test {
+namespace {
+
+using BundlePrices = TimedRun;
+using Sets = std::vector<std::string>;
+
+const char* const kMachine =
+    "scene: {builtin: terrain, triangles: 3000}\nimage: {width: 24, height: 16, samples: 1, max_depth: 1}\n"
+    "topology: {resources: 2, shape: ring, visit: owners}\nrays: {slots_per_resource: 512}\n"
+    "packets: {rays: 32}\nbundles: {size: 16}\nenergy: {profile: n45}\n";
+
+double tests(const nlohmann::ordered_json& r, const char* kind) {
+  return r["tests"][kind]["count"].get<double>();
+}
+double pj(const nlohmann::ordered_json& r, const char* part) {
+  return r["energy"]["parts"][part]["joules"].get<double>() * 1e12;
+}
+double units_mm2(const nlohmann::ordered_json& r) {
+  return r["area"]["parts"]["units"]["mm2"].get<double>();
+}
+
+TEST_F(BundlePrices, AreThoseOfTheOperationsOfTheirForm) {
+  const Json interval = report(kMachine), serial = report(kMachine, {"bundles.form=silhouette"}),
+             parallel = report(kMachine, {"bundles.form=silhouette", "bundles.edges=parallel"});
+  EXPECT_EQ(serial["digest"], interval["digest"]);
+  EXPECT_EQ(parallel["digest"], interval["digest"]);
+  EXPECT_EQ(tests(interval, "silhouettes"), 0);
+  EXPECT_EQ(tests(interval, "edges"), 0);
+  EXPECT_NEAR(pj(interval, "bundle_tests"), 29 * tests(interval, "bundle"), 1);
+  for (const Json* r : {&serial, &parallel}) {
+    EXPECT_GT(tests(*r, "edges"), tests(*r, "silhouettes"));
+    EXPECT_LT(tests(*r, "reciprocals"), tests(interval, "reciprocals"));
+    EXPECT_NEAR(pj(*r, "bundle_tests"),
+                29 * (tests(*r, "bundle") - tests(*r, "silhouettes")) + 17.3 * tests(*r, "silhouettes") +
+                    8.3 * tests(*r, "edges"),
+                1);
+  }
+  for (const Json* r : {&interval, &serial, &parallel})
+    EXPECT_NEAR(pj(*r, "reciprocals"), 18.4 * tests(*r, "reciprocals"), 1);
+  EXPECT_LT(tests(serial, "edges"), tests(parallel, "edges"));
+  EXPECT_LT(parallel["engine"]["cycles"], serial["engine"]["cycles"]);
+  // A unit for intervals is a box unit; one for silhouettes is half of it, and a third of it for each edge at once.
+  EXPECT_NEAR(units_mm2(serial) - units_mm2(interval), 2 * (0.063 + 0.042 - 0.126), 1e-5);
+  EXPECT_NEAR(units_mm2(parallel) - units_mm2(interval), 2 * (0.063 + 6 * 0.042 - 0.126), 1e-5);
+  const Json dearer = report(kMachine, {"bundles.form=silhouette", "area.edge=1.042", "energy.edge=108.3"});
+  EXPECT_NEAR(units_mm2(dearer) - units_mm2(serial), 2, 1e-5);
+  EXPECT_NEAR(pj(dearer, "bundle_tests") - pj(serial, "bundle_tests"), 100 * tests(serial, "edges"), 1);
+}
+
+// A slow divider holds intervals up, and silhouettes, which divide less and behind their tests, by less.
+TEST_F(BundlePrices, DivisionsTakeTime) {
+  const auto more = [&](Sets sets) {
+    const double fast = report(kMachine, sets)["engine"]["cycles"];
+    sets.insert(sets.end(), {"testers.reciprocal.interval_cycles=16", "testers.reciprocal.latency_cycles=60"});
+    return report(kMachine, sets)["engine"]["cycles"].get<double>() / fast;
+  };
+  const double interval = more({}), silhouette = more({"bundles.form=silhouette", "bundles.edges=parallel"});
+  EXPECT_GT(interval, 1.05);
+  EXPECT_LT(silhouette, interval);
+}
+
+}  // namespace
+}  // namespace carousel::bundle_prices_test
