@@ -28,8 +28,11 @@ report::UnitCycles unit_cycles(const ringbus::cycle::BankUse& use, const ringbus
     const auto i = static_cast<std::size_t>(state);
     return tile.states[i] - use.busy_in[i];
   };
+  constexpr auto kTesting = static_cast<std::size_t>(TileState::kTesting);
   return {.busy = use.busy,
-          .other_units = in(TileState::kTesting),
+          .other_units = tile.testing.any - use.busy_in[kTesting],
+          .latency = tile.testing.latency,
+          .passing = tile.states[kTesting] - tile.testing.any - tile.testing.latency,
           .memory = in(TileState::kMemory),
           .link = in(TileState::kLink),
           .credits = in(TileState::kCredits),
@@ -55,6 +58,8 @@ report::Units units(const ringbus::cycle::TileResult& tile, std::uint64_t cycles
     for (const auto [kind, use] : tile.units)
       if (use.lanes > 0) fill.kinds[kind] = ratio(use.passes, use.lanes);
   }
+  for (const auto [kind, use] : tile.units)
+    if (use.busy > 0) out.unit_fill.kinds[kind] = use.fill;
   if (config.rays.banks > 0) {
     out.bank_conflicts = tile.bank_conflicts;
     out.second_reads = tile.second_reads;

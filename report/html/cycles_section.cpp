@@ -15,13 +15,17 @@ namespace carousel::report::html {
 
 namespace {
 
-/// The uses of time of all parts, in the order of the chart.
+/// The uses of time of all parts, in the order of the chart. Cycles in which a part of a kind's units works are divided
+/// by that part.
 struct Use {
   const char* key;
   const char* title;
 };
 constexpr Use kUses[] = {{"busy", "working"},
+                         {"unfilled", "places left empty"},
                          {"other_units", "other units work"},
+                         {"latency", "waits for its pipelines"},
+                         {"passing", "packets pass untested"},
                          {"memory", "waits for memory"},
                          {"link", "waits for a link"},
                          {"credits", "waits for credits"},
@@ -43,9 +47,15 @@ void add(Table& table, const std::string& name, const Shares& shares) {
   for (const double s : shares) row.push_back(share(s));
 }
 
-Shares shares_of(const Json& unit, double cycles) {
+/// The cycles of a kind of unit of a resource.
+Shares shares_of(const Json& units, const std::string& kind, double cycles) {
+  const Json& unit = units[kind];
+  const double fill = std::clamp(number_at(units, "unit_fill." + kind, 1), 0.0, 1.0);
   Shares out{};
   for (std::size_t u = 0; u < kUseCount; ++u) out[u] = number_at(unit, kUses[u].key) / cycles;
+  const double busy = out[0];
+  out[0] = fill * busy;
+  out[1] = busy - out[0];
   return out;
 }
 
@@ -67,8 +77,8 @@ void add_units(Table& table, const Json& resources, double cycles) {
   double dispatch = 0;
   for (const Json& resource : resources) {
     for (const auto& [kind, unit] : resource["units"].items()) {
-      if (!unit.is_object()) continue;
-      const Shares one = shares_of(unit, cycles * static_cast<double>(resources.size()));
+      if (!unit.is_object() || !unit.contains("busy")) continue;
+      const Shares one = shares_of(resource["units"], kind, cycles * static_cast<double>(resources.size()));
       auto found = std::find_if(kinds.begin(), kinds.end(), [&k = kind](const auto& row) { return row.first == k; });
       if (found == kinds.end()) found = kinds.insert(kinds.end(), {kind, Shares{}});
       for (std::size_t u = 0; u < kUseCount; ++u) found->second[u] += one[u];
@@ -121,11 +131,12 @@ Html cycles_section(const Json& report) {
   Table each = table_of_uses("cycles-by-resource", "Use of the cycles of the box units, by resource", "resource");
   if (resources && !resources->empty() && resources->front().contains("units"))
     for (const Json& r : *resources)
-      if (const Json* box = find(r, "units.box"))
-        add(each, fmt::format("resource {}", value_text(r["resource"])), shares_of(*box, cycles));
+      if (find(r, "units.box"))
+        add(each, fmt::format("resource {}", value_text(r["resource"])), shares_of(r["units"], "box", cycles));
   if (parts.rows.empty()) return {};
-  Html out =
-      markup("<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it.</p>\n");
+  Html out = markup(
+      "<p>Each line adds up to all cycles of the run. A unit that waits shows the part that kept it. Where a "
+      "part of a kind's units works, the empty places of the others stand beside it.</p>\n");
   const auto height = [](const Table& t) {
     return 110 + 30 * static_cast<int>(std::min<std::size_t>(t.rows.size(), 32));
   };

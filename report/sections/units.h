@@ -11,13 +11,19 @@ namespace carousel::report {
 
 /// Cycles of a group of equal units; they add up to the run.
 struct UnitCycles {
-  std::uint64_t busy = 0, other_units = 0, memory = 0, link = 0, credits = 0, storage = 0, shading = 0, idle = 0;
+  std::uint64_t busy = 0, other_units = 0, latency = 0, passing = 0, memory = 0, link = 0, credits = 0, storage = 0,
+                shading = 0, idle = 0;
 
   static constexpr auto counters() {
     using C = UnitCycles;
     return std::array{
         Counter{"busy", &C::busy, "cycles", "a test was started, or the units' interval kept one from starting"},
-        Counter{"other_units", &C::other_units, "cycles", "a packet was tested in other units or passed through"},
+        Counter{"other_units", &C::other_units, "cycles",
+                "a packet was in test, and other units worked or ray records were read"},
+        Counter{"latency", &C::latency, "cycles",
+                "a packet was in test, and all units waited for answers from their pipelines"},
+        Counter{"passing", &C::passing, "cycles",
+                "a packet was in test, and no test was under way: its ray IDs were read, or it passed without a test"},
         Counter{"memory", &C::memory, "cycles", "a packet waited for shape data"},
         Counter{"link", &C::link, "cycles", "a packet waited to leave"},
         Counter{"credits", &C::credits, "cycles", "no packet was free to issue with"},
@@ -28,7 +34,7 @@ struct UnitCycles {
   }
 };
 
-/// The fraction of the lanes that had a test, of each kind of unit; absent for kinds that made none.
+/// The fraction of the units, or of their lanes, that had a test, of each kind; absent for kinds that made none.
 struct LaneFill {
   PerUnit<std::optional<double>> kinds{};
 };
@@ -75,6 +81,7 @@ void describe(V& v, const Warps& r) {
 
 struct Units {
   PerUnit<UnitCycles> kinds{};
+  LaneFill unit_fill{};
   std::optional<LaneFill> lane_fill{};
   RunFeatures features{};
   std::optional<UnitCycles> ray_reads{}, primitive_ray_reads{};
@@ -106,6 +113,7 @@ void describe(V& v, const Units& r) {
       "the testers behind a distributor, with topology.form: distributor; the cycles of units are the mean of the "
       "testers");
   v.section("warps", r.warps, "rays in warps, with testers.simt");
+  v.section("unit_fill", r.unit_fill, "fraction of the units of a kind that had a test while any of them was busy");
   v.section("lane_fill", r.lane_fill, "fraction of the lanes that had a test, with testers.simd.lanes");
   v.field("dispatch_busy", r.dispatch_busy, "cycles", "the dispatch stage looked through the ray IDs of a packet");
   v.field("dispatch_idle", r.dispatch_idle, "cycles", "the dispatch stage did nothing");

@@ -93,9 +93,12 @@ class CycleRun {
   static void check_ledger(const TileResult& tile, Cycle end) {
     Cycle sum = 0;
     for (const Cycle state : tile.states) sum += state;
-    bool fits = sum == end && tile.dispatch.busy <= end;
+    constexpr auto kTesting = static_cast<std::size_t>(TileState::kTesting);
+    bool fits =
+        sum == end && tile.dispatch.busy <= end && tile.testing.any + tile.testing.latency <= tile.states[kTesting];
     const auto check = [&](const BankUse& use) {
       Cycle busy = 0;
+      fits &= use.busy_in[kTesting] <= tile.testing.any;
       for (std::size_t state = 0; state < kTileStates; ++state) {
         fits &= use.busy_in[state] <= tile.states[state];
         busy += use.busy_in[state];

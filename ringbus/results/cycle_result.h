@@ -53,11 +53,21 @@ struct BankUse {
   Cycle busy = 0;
   std::array<Cycle, kTileStates> busy_in{};  ///< by TileState; they add up to `busy`
   std::uint64_t passes = 0, lanes = 0;       ///< tests, and the lanes of the vectors in which they were started
+  double fill = 0;                           ///< part of its units that had a test, over its busy cycles
   friend bool operator==(const BankUse&, const BankUse&) = default;
+};
+
+/// Cycles of a resource in which a packet is in test. In the rest of them no test is under way: dispatch reads the
+/// packet's IDs, or it passes without a test.
+struct TestingCycles {
+  Cycle any = 0;      ///< some bank or port of the ray store is busy
+  Cycle latency = 0;  ///< none is, but answers are awaited
+  friend bool operator==(const TestingCycles&, const TestingCycles&) = default;
 };
 
 struct TileResult {
   std::array<Cycle, kTileStates> states{};  ///< by TileState
+  TestingCycles testing;                    ///< of those in TileState::kTesting
   PerUnit<BankUse> units;
   BankUse ray_reads;               ///< the port of the ray store; with `rays.banks` that of its banks to the box units
   BankUse primitive_ray_reads;     ///< with `rays.banks` that to the units for primitives

@@ -15,6 +15,8 @@ class Fifo {
   std::size_t size() const { return tail_ - head_; }
   /// Only when not empty, as pop_front().
   const T& front() const { return items_[head_ & (items_.size() - 1)]; }
+  /// i < size(), from the front.
+  const T& operator[](std::size_t i) const { return items_[(head_ + i) & (items_.size() - 1)]; }
   void pop_front() { ++head_; }
   void push_back(T item) {
     if (size() == items_.size()) grow();

@@ -23,6 +23,12 @@ export function wrongTables(tables, report) {
     if (report.resources.length < 2) return;
     check('cycles-by-resource', i, 'waits for memory', r.units.box.memory / cycles);
     check('cycles-by-resource', i, 'nothing to do', r.units.box.idle / cycles);
+    const fill = r.units.unit_fill?.box ?? 1;
+    check('cycles-by-resource', i, 'working', fill * r.units.box.busy / cycles);
+    check('cycles-by-resource', i, 'places left empty', (1 - fill) * r.units.box.busy / cycles);
+    check('cycles-by-resource', i, 'other units work', r.units.box.other_units / cycles);
+    check('cycles-by-resource', i, 'waits for its pipelines', r.units.box.latency / cycles);
+    check('cycles-by-resource', i, 'packets pass untested', r.units.box.passing / cycles);
   });
   report.links?.forEach((l, i) => {
     check('links', i, 'from', l.from);

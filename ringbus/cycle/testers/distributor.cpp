@@ -123,6 +123,15 @@ Cycle Distributor::Units::busy() const {
   return sum / of_.testers_.size();
 }
 
+double Distributor::Units::fill() const {
+  Cycle worked = 0, held = 0;
+  for (const OneTester& tester : of_.testers_) {
+    worked += tester.units[kind_].worked();
+    held += tester.units[kind_].busy() * tester.units[kind_].units();
+  }
+  return held == 0 ? 0 : static_cast<double>(worked) / static_cast<double>(held);
+}
+
 Cycle Distributor::Units::busy_before(Cycle now) const {
   Cycle sum = 0;
   for (OneTester& tester : of_.testers_) sum += tester.units[kind_].busy_before(now);

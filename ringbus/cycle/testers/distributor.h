@@ -54,12 +54,20 @@ class Distributor {
     Units(Distributor& of, UnitKind kind) : of_(of), kind_(kind) {}
     Cycle busy() const;
     Cycle busy_before(Cycle now) const;
+    /// Part of the units that had a test, over the busy cycles of all testers.
+    double fill() const;
 
    private:
     Distributor& of_;
     UnitKind kind_;
   };
   Units units(UnitKind kind) { return {*this, kind}; }
+  /// Calls `call` with each bank of each tester.
+  template <class Call>
+  void each_bank(const Call& call) const {
+    for (const OneTester& tester : testers_)
+      for (const auto [kind, bank] : tester.units) call(bank);
+  }
 
  private:
   /// The times of the last events of one kind, as many as there are places. A place is taken again when the event of

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "core/config/fields/cull_planes.h"
@@ -11,6 +12,7 @@
 #include "core/config/fields/topology.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/types/ids.h"
+#include "ringbus/cycle/testers/bank_overlap.h"
 #include "ringbus/cycle/testers/distributor.h"
 #include "ringbus/cycle/testers/lanes.h"
 #include "ringbus/cycle/testers/level_cycles.h"
@@ -43,6 +45,7 @@ class Tester {
         builder_({regrouped_per_cycle, 1, 1}),
         lanes_(config.simd),
         blocks_(config.bundle_blocks),
+        overlap_(static_cast<Cycle>(lanes_.reformatting())),
         stages_{order, config.any_hit == TestersConfig::AnyHit::kInline},
         reads_cost_(reads_per_cycle > 0),
         banks_of_rays_(static_cast<std::uint64_t>(banks_of_rays)) {
@@ -107,6 +110,13 @@ class Tester {
   /// Adds the cycles in which each bank was busy, from the last call until `now`, to those in `state`, the resource's
   /// state in all of these cycles.
   void account(TileState state, Cycle now) {
+    advance(now);
+    const TestingCycles together = overlap_.take();
+    if (state == TileState::kTesting) {
+      testing_.any += together.any;
+      testing_.latency += together.latency;
+    }
+    builder_.busy_before(now);
     for (const auto [kind, bank] : banks_)
       distributor_ ? units_[kind].account(distributor_->units(kind), state, now)
                    : units_[kind].account(bank, state, now);
@@ -114,9 +124,12 @@ class Tester {
     primitive_reads_.account(primitive_store_, state, now);
   }
   /// Fills in how long each bank was busy until the last account().
-  void fill_in(TileResult& result) const {
+  void fill_in(TileResult& result) {
+    result.testing = testing_;
     for (const auto [kind, ledger] : units_) {
       result.units[kind] = ledger.use;
+      const UnitBank& bank = banks_[kind];
+      result.units[kind].fill = distributor_ ? distributor_->units(kind).fill() : fill_of(bank);
       result.units[kind].passes = passes_[kind];
       result.units[kind].lanes = banks_[kind].tests() * (kind == UnitKind::kDecoder ? 1 : lanes_.count());
     }
@@ -141,13 +154,14 @@ class Tester {
 
   /// The cycles before `at` in which each bank was busy. Times of calls, also of account(), must not decrease.
   PerUnit<Cycle> busy_before(Cycle at) {
+    advance(at);
     PerUnit<Cycle> busy{};
     for (const auto [kind, bank] : banks_)
       busy[kind] = distributor_ ? distributor_->units(kind).busy_before(at) : bank.busy_before(at);
     return busy;
   }
-  Cycle reads_before(Cycle at) { return store_.busy_before(at); }
-  Cycle primitive_reads_before(Cycle at) { return primitive_store_.busy_before(at); }
+  Cycle reads_before(Cycle at) { return advance(at), store_.busy_before(at); }
+  Cycle primitive_reads_before(Cycle at) { return advance(at), primitive_store_.busy_before(at); }
 
   /// Tracks from `track` on: one a kind of unit, of each tester behind a distributor, and one each of the ray store's
   /// ports.
@@ -161,6 +175,7 @@ class Tester {
     primitive_store_.record(slices, track + static_cast<std::uint32_t>(kUnitKinds.size()) + 1);
   }
   void close(Cycle end) {
+    advance(end);
     if (distributor_) distributor_->close(end);
     for (const auto [kind, bank] : banks_) bank.close(end);
     store_.close(end);
@@ -183,6 +198,17 @@ class Tester {
     }
   };
 
+  /// Before any bank forgets times until `now`.
+  void advance(Cycle now) {
+    overlap_.advance(now, [&](const auto& take) {
+      if (distributor_) distributor_->each_bank(take);
+      for (const auto [kind, bank] : std::as_const(banks_)) take(bank);
+      for (const UnitBank* port : {&store_, &primitive_store_, &builder_}) take(*port);
+    });
+  }
+  static double fill_of(const UnitBank& bank) {
+    return bank.busy() == 0 ? 0 : static_cast<double>(bank.worked()) / static_cast<double>(bank.busy() * bank.units());
+  }
   /// The vectors of lanes in which the passes of some rays are started.
   std::uint64_t starts(UnitKind kind, std::uint64_t passes, const TestedRays& of) {
     passes_[kind] += passes;
@@ -271,6 +297,8 @@ class Tester {
   UnitBank store_, primitive_store_{{1, 1, 1}}, builder_;
   Lanes lanes_;
   TestersConfig::BundleBlocks blocks_;
+  BankOverlap overlap_;
+  TestingCycles testing_;
   PerUnit<Ledger> units_;
   Ledger ray_reads_, primitive_reads_;
   RayStages stages_;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 
 #include "core/config/fields/testers.h"
 #include "ringbus/results/slice_log.h"
@@ -72,6 +73,14 @@ class UnitBank {
       slices_->add({.begin = last.begin, .end = std::min(last.end, end), .track = track_});
   }
 
+  /// Busy times that busy_before() has not passed, in their order; the last one may grow.
+  struct Span {
+    Cycle begin = 0, end = 0;
+  };
+  bool has_span(std::size_t i) const { return i < spans_.size() + (free_at_ > begun_ ? 1 : 0); }
+  Span span(std::size_t i) const { return i < spans_.size() ? spans_[i] : Span{begun_, free_at_}; }
+  bool works_before(Cycle now) const { return (spans_.empty() ? begun_ : spans_.front().begin) < now && has_span(0); }
+
   Cycle latency() const { return latency_; }
   Cycle interval() const { return interval_; }
   /// The time of so many tests of which each is started after the one before by an interval, however many units there
@@ -81,12 +90,12 @@ class UnitBank {
   }
   Cycle free_at() const { return free_at_; }  ///< the first cycle in which a test may start
   Cycle busy() const { return busy_; }        ///< cycles taken over all time, as far as tests have been reserved
+  /// Cycles of all units together that the tests took: at most busy() times the units.
+  Cycle worked() const { return tests_ * interval_; }
+  Cycle units() const { return units_; }
   std::uint64_t tests() const { return tests_; }
 
  private:
-  struct Span {
-    Cycle begin = 0, end = 0;
-  };
   Cycle units_, interval_, latency_;
   Cycle free_at_ = 0, busy_ = 0;
   std::uint64_t tests_ = 0, spare_ = 0;  // spare: units left idle when the last tests started

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "ringbus/cycle/testers/unit_bank.h"
+#include "ringbus/results/cycle_result.h"
+
+namespace carousel::ringbus::cycle {
+
+/// What the banks of a resource do together: the cycles in which any of them is busy, and those in which none is while
+/// answers to earlier tests are awaited. Banks forget the times that they have accounted, so these are taken before.
+class BankOverlap {
+ public:
+  /// `after`: cycles from the last answer of a strip until it counts.
+  explicit BankOverlap(Cycle after) : after_(after) {}
+
+  /// Takes the banks' times from the last call until `now`. Calls `each` with a function that takes a bank, which it
+  /// must call for every bank. Times of calls must not decrease.
+  template <class Each>
+  void advance(Cycle now, const Each& each) {
+    if (now <= seen_) return;
+    lanes_.clear();
+    each([&](const UnitBank& bank) {
+      if (bank.works_before(now)) lanes_.push_back({&bank, 0, bank.span(0)});
+    });
+    Cycle at = seen_;
+    while (!lanes_.empty()) {
+      Lane& first = *std::min_element(lanes_.begin(), lanes_.end(),
+                                      [](const Lane& a, const Lane& b) { return a.span.begin < b.span.begin; });
+      const UnitBank::Span span = first.span;
+      if (span.begin > at) wait(at, span.begin);
+      at = std::max(at, span.begin);
+      if (const Cycle end = std::min(span.end, now); end > at) {
+        so_far_.any += end - at;
+        at = end;
+      }
+      answered_ = std::max(answered_, span.end - first.bank->interval() + first.bank->latency() + after_);
+      if (!first.bank->has_span(++first.index) || (first.span = first.bank->span(first.index)).begin >= now)
+        lanes_.erase(lanes_.begin() + (&first - lanes_.data()));
+    }
+    if (now > at) wait(at, now);
+    seen_ = now;
+  }
+
+  /// The cycles since the last call, up to the last advance().
+  TestingCycles take() {
+    const TestingCycles out{so_far_.any - taken_.any, so_far_.latency - taken_.latency};
+    taken_ = so_far_;
+    return out;
+  }
+
+ private:
+  struct Lane {
+    const UnitBank* bank;
+    std::size_t index;
+    UnitBank::Span span;
+  };
+
+  /// No bank is busy.
+  void wait(Cycle begin, Cycle end) {
+    if (answered_ > begin) so_far_.latency += std::min(answered_, end) - begin;
+  }
+
+  std::vector<Lane> lanes_;  // scratch: banks with times that are not taken yet
+  Cycle after_, seen_ = 0, answered_ = 0;
+  TestingCycles so_far_, taken_;
+};
+
+}  // namespace carousel::ringbus::cycle
