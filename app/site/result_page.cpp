@@ -1,5 +1,11 @@
 #include "app/site/result_page.h"
 
+#include <exception>
+#include <optional>
+#include <utility>
+
+#include <spdlog/spdlog.h>
+
 #include "core/system/error.h"
 #include "report/html/run_page.h"
 #include "report/html/studies/study_pages.h"
@@ -10,13 +16,36 @@ namespace carousel::app {
 
 using Json = nlohmann::ordered_json;
 
+namespace {
+
+/// What `carousel versus` said of the machine of a run: in its folder, or in the one that versus takes by itself.
+std::optional<Json> versus_beside(const Json& report, const std::filesystem::path& folder) {
+  const std::filesystem::path full = std::filesystem::absolute(folder / ".").lexically_normal().parent_path();
+  for (const std::filesystem::path& path :
+       {full / "versus.json", full.parent_path() / (full.filename().string() + "-versus") / "versus.json"}) {
+    std::error_code ignored;
+    if (!std::filesystem::exists(path, ignored)) continue;
+    try {
+      report::Document document = report::read_document(path);
+      if (document.kind == report::DocumentKind::kVersus && report::html::is_of_run(document.json, report))
+        return std::move(document.json);
+    } catch (const std::exception& error) {
+      spdlog::debug("{}: is not shown beside the run: {}", path.string(), error.what());
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 std::string run_page_of(const Json& report, const std::filesystem::path& folder) {
   report::html::Picture picture, heat;
   if (report.contains("digest") && report["digest"].contains("image"))
     if (const auto found = shading::page_picture(folder / "image.png")) picture = {found->mime_type, found->bytes};
   if (report.contains("heat"))
     if (const auto found = shading::page_picture(folder / "heat_cycles.png")) heat = {found->mime_type, found->bytes};
-  return report::html::run_page(report, picture, heat);
+  const std::optional<Json> versus = versus_beside(report, folder);
+  return report::html::run_page(report, picture, heat, versus ? &*versus : nullptr);
 }
 
 std::string page_of_file(const report::Document& document, const std::filesystem::path& file) {

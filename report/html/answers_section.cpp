@@ -151,6 +151,15 @@ Html cost_card(const Json& report) {
   if (find(report, "tests.box.per_ray"))
     item("Tests", fmt::format("{:.1f} boxes, {:.1f} triangles", number_at(report, "tests.box.per_ray"),
                               number_at(report, "tests.triangle.per_ray")));
+  if (const double own = number_at(report, "tests.procedural.per_ray"); own > 0) {
+    std::string text = fmt::format("{:.3g} tests of procedural primitives", own);
+    if (find(report, "tests.programs"))
+      text +=
+          fmt::format(", {:.3g} of them by programs of {:.1f} cycles each", number_at(report, "tests.programs.per_ray"),
+                      number_at(report, "tests.program_cycles.per_ray") /
+                          std::max(1e-12, number_at(report, "tests.programs.per_ray")));
+    item("Shapes", text);
+  }
   if (const Json* bytes = find(report, "bytes"); bytes && rays > 0) {
     double all = 0, memory = 0;
     for (const Json& row : *bytes) {
@@ -197,15 +206,16 @@ std::vector<StillGain> still_gains_of(const Json& report) {
   return out;
 }
 
-Html answers_section(const Json& report, const Picture& picture) {
+Html answers_section(const Json& report, const Picture& picture, const Json* versus) {
   Html out;
   if (report.value("incomplete", false))
     out += markup(
         "<p class=\"notice\"><strong>Incomplete:</strong> the run was interrupted, and its counts are partial.</p>\n");
   const Html machine = still_machine(report);
-  out += markup("<div class=\"answers\">\n{}{}{}{}</div>\n", card("What limits it", limits_card(report)),
+  out += markup("<div class=\"answers\">\n{}{}{}{}{}</div>\n", card("What limits it", limits_card(report)),
                 card("Why", why_card(report)), card("What to change", change_card(report)),
-                card("What a ray costs", cost_card(report)));
+                card("What a ray costs", cost_card(report)),
+                versus == nullptr ? Html() : card("How a conventional machine does", twin_card(*versus)));
   std::vector<StillGain> gains = still_gains_of(report);
   constexpr std::size_t kGains = 5;
   if (gains.size() > kGains) gains.resize(kGains);

@@ -7,6 +7,7 @@
 
 #include "report/html/html.h"
 #include "report/html/run_sections.h"
+#include "report/text/number_text.h"
 
 namespace carousel::report::html {
 
@@ -111,13 +112,18 @@ Html energy_section(const Json& report, const Json& schema) {
       number_at(report, "energy.nj_per_ray"), 1e3 * number_at(report, "energy.joules"),
       number_at(report, "energy.watts"), 1e-6 * number_at(report, "energy.rays_per_joule"),
       number_at(report, "area.mm2"), number_at(report, "area.mrays_per_second_per_mm2"));
-  if (find(report, "energy.peak"))
+  if (const Json* peak = find(report, "energy.peak")) {
+    const double mean = number_at(report, "energy.watts"), watts = number_at(*peak, "watts");
+    out += markup("<p>Power is highest in the {} cycles from cycle {} on: {:.4g} W", value_text((*peak)["cycles"]),
+                  value_text((*peak)["first_cycle"]), watts);
+    if (mean > 0) out += markup(", {:.2f} times the mean of the run", watts / mean);
     out += markup(
-        "<p>No thousand cycles that begin at a multiple of {} take more power than those from cycle {} on: {:.4g} W, "
-        "most of it ({:.0f} %) in {}. Those that begin elsewhere take {:.4g} W at most.</p>\n",
-        value_text(report["energy"]["peak"]["resolution"]), value_text(report["energy"]["peak"]["first_cycle"]),
-        number_at(report, "energy.peak.watts"), 100 * number_at(report, "energy.peak.part_share"),
-        words(text_at(report["energy"]["peak"], "part")), number_at(report, "energy.peak.watts_at_most"));
+        ". There {} takes {} of it. Stretches that begin every {} cycles were compared; one that begins between them "
+        "takes at "
+        "most {:.4g} W.</p>\n",
+        words(text_at(*peak, "part")), percent(number_at(*peak, "part_share")), value_text((*peak)["resolution"]),
+        number_at(*peak, "watts_at_most"));
+  }
   out += over_time(report);
   out += parts_of(report, schema, "energy", "joules", "Energy by part");
   out += parts_of(report, schema, "area", "mm2", "Area by part");

@@ -10,17 +10,18 @@
 
 namespace carousel::report::html {
 
-std::string run_page(const Json& report, const Picture& picture, const Picture& heat) {
+std::string run_page(const Json& report, const Picture& picture, const Picture& heat, const Json* versus) {
   const Json schema = report_schema();
   // The list of all sections, in their order, each with its tab.
   const std::vector<Section> sections{
-      {"answers", "The run at a glance", answers_section(report, picture)},
+      {"answers", "The run at a glance", answers_section(report, picture, versus)},
       {"machine", "The machine", machine_section(report, schema), "Machine"},
       {"cycles", "Use of the cycles", cycles_section(report), "Machine"},
       {"waits", "Waiting, ranked", waits_section(report), "Machine"},
       {"gains", "Gain of a better part", gains_section(report, schema), "Gains"},
       {"bytes", "Bytes by wire", bytes_section(report, schema), "Bytes and energy"},
       {"energy", "Energy and area", energy_section(report, schema), "Bytes and energy"},
+      {"frames", "Frames", frames_section(report, schema), "Frames"},
       {"time", "Over time", time_section(report), "Over time"},
       {"latency", "Latency", latency_section(report), "Over time"},
       {"rays", "Rays", rays_section(report, schema), "Rays"},

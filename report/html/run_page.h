@@ -9,7 +9,11 @@
 namespace carousel::report::html {
 
 /// report.html of a run, from its report.json. Also for reports of older programs: sections whose numbers are missing
-/// are left out.
-std::string run_page(const nlohmann::ordered_json& report, const Picture& picture, const Picture& heat = {});
+/// are left out. `versus`, if not null, is versus.json of the same machine (is_of_run()).
+std::string run_page(const nlohmann::ordered_json& report, const Picture& picture, const Picture& heat = {},
+                     const nlohmann::ordered_json* versus = nullptr);
+
+/// True if a run of `versus` is that of `report`: its machine had the same hits, in as many cycles.
+bool is_of_run(const nlohmann::ordered_json& versus, const nlohmann::ordered_json& report);
 
 }  // namespace carousel::report::html

@@ -14,7 +14,9 @@ namespace carousel::report::html {
 // the report has nothing to show. `schema` is report_schema().
 
 /// One screen: what limits the machine, why, what to change, what a ray costs.
-Html answers_section(const nlohmann::ordered_json& report, const Picture& picture);
+/// `versus`: the report of versus of this machine, which is told beside it; null if there is none.
+Html answers_section(const nlohmann::ordered_json& report, const Picture& picture,
+                     const nlohmann::ordered_json* versus);
 Html verdict_section(const nlohmann::ordered_json& report);
 Html sampled_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html machine_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
@@ -26,6 +28,8 @@ Html waits_section(const nlohmann::ordered_json& report);
 Html gains_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html bytes_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html energy_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
+/// A series: its frames, with bars of their cycles and tests.
+Html frames_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html time_section(const nlohmann::ordered_json& report);
 Html latency_section(const nlohmann::ordered_json& report);
 Html collections_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
@@ -47,6 +51,9 @@ std::string phases_text(const nlohmann::ordered_json& report);
 std::vector<StillGain> still_gains_of(const nlohmann::ordered_json& report);
 /// The use of the cycles by kind of part, as bars.
 Html still_cycles(const nlohmann::ordered_json& report);
+
+/// The machine against its conventional twin.
+Html twin_card(const nlohmann::ordered_json& versus);
 
 /// The machine in words: "8 resources in a ring".
 std::string machine_words(const nlohmann::ordered_json& report);

@@ -21,6 +21,8 @@ export const pages = {
       '--pattern', 'stream,ping_pong', '--depths', '4']},
   sweep: {command: 'sweep', config: 'sweep', sets: ['image.width=8', 'image.height=8'],
     options: ['--vary', 'topology.resources=2,4', '--vary', 'memory.l2_kib=16,64']},
+  frames: {...machine('moving_scene', ['image.width=16', 'image.height=12', 'frames.count=3', 'scene.instances=40',
+    'engine.what_if=false']), drawn: ['fig-frame-cycles', 'fig-frame-tests']},
   life: {command: 'follow', config: 'demo', sets: cycle, options: ['--pixel', '12,8']},
   compare: {command: 'compare', of: ['machine', 'native']},
 };

@@ -32,6 +32,11 @@ Html at_a_glance(const Comparison& c) {
   else
     out += markup("<p>The configuration is the same{}.</p>\n",
                   c.deterministic ? "" : "; counts and times depend on the timing of threads");
+  for (std::size_t r = 1; r < c.runs.size(); ++r)
+    if (c.within_noise[r])
+      out += markup(
+          "<p>{} is not told from A by its cycles: another seed of the picture changes them by up to {} (~).</p>\n",
+          letter(r), percent(*c.within_noise[r]));
   Table table{"runs", "The runs", {{"letter"}, {"run"}}};
   table.open = true;
   for (const ComparedText& text : c.texts) table.columns.push_back({text.name});
@@ -52,15 +57,18 @@ Cell value_of(const ComparedRow& row, std::size_t run) {
 }
 
 /// The ratio to the first run; of shares the difference in points.
-Cell ratio_of(const ComparedRow& row, std::size_t run) {
+Cell ratio_of(const ComparedRow& row, std::size_t run, bool noise) {
   if (row.unit == "share") {
     if (!row.values[run] || !row.values[0]) return cell("–");
     return cell(fmt::format("{:+.1f} points", 100 * (*row.values[run] - *row.values[0])));
   }
-  return row.ratios[run] ? Cell{fmt::format("×{:.3g}", *row.ratios[run]), *row.ratios[run]} : cell("–");
+  return row.ratios[run]
+             ? Cell{fmt::format("{}×{:.3g}", noise && row.of_cycles ? "~" : "", *row.ratios[run]), *row.ratios[run]}
+             : cell("–");
 }
 
-Section section_of(const ComparedSection& section, std::size_t number, std::size_t runs) {
+Section section_of(const ComparedSection& section, std::size_t number, const Comparison& c) {
+  const std::size_t runs = c.runs.size();
   Table table{fmt::format("section-{}", number), "Runs side by side: " + section.name, {{"quantity"}, {"unit"}}};
   for (std::size_t r = 0; r < runs; ++r) table.columns.push_back({letter(r)});
   for (std::size_t r = 1; r < runs; ++r) table.columns.push_back({letter(r) + "/A"});
@@ -69,7 +77,7 @@ Section section_of(const ComparedSection& section, std::size_t number, std::size
     auto& cells = table.rows.emplace_back(std::vector<Cell>{cell(words(row.name)), cell(row.unit)});
     for (std::size_t r = 0; r < runs; ++r) cells.push_back(value_of(row, r));
     for (std::size_t r = 1; r < runs; ++r) {
-      cells.push_back(ratio_of(row, r));
+      cells.push_back(ratio_of(row, r, c.within_noise[r].has_value()));
       any_ratio |= row.unit != "share" && row.ratios[r] && *row.ratios[r] > 0;
     }
     shares &= row.unit == "share";
@@ -104,7 +112,7 @@ Html texts_of(const std::string& id, const std::string& caption, const std::vect
 std::string compare_page(const Comparison& c, bool all) {
   const std::size_t runs = c.runs.size();
   std::vector<Section> sections{{"verdict", "At a glance", at_a_glance(c)}};
-  for (std::size_t i = 0; i < c.sections.size(); ++i) sections.push_back(section_of(c.sections[i], i, runs));
+  for (std::size_t i = 0; i < c.sections.size(); ++i) sections.push_back(section_of(c.sections[i], i, c));
   sections.push_back({"configuration", "Configuration",
                       texts_of("configuration", "Keys of the configurations that differ", c.configuration, runs)});
   Html rest;

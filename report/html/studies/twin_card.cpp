@@ -1,0 +1,47 @@
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "report/html/html.h"
+#include "report/html/run_page.h"
+#include "report/html/run_sections.h"
+
+namespace carousel::report::html {
+
+namespace {
+
+/// A ratio of the twin's to ours, in words: "1.30 times as fast (1.25 to 1.36)".
+std::string times_text(const Json& ratio, const char* more) {
+  std::string out = fmt::format("{:.2f} times {}", number_at(ratio, "ratio"), more);
+  if (find(ratio, "low")) out += fmt::format(" ({:.2f} to {:.2f})", number_at(ratio, "low"), number_at(ratio, "high"));
+  return out;
+}
+
+}  // namespace
+
+bool is_of_run(const Json& versus, const Json& report) {
+  const Json *cycles = find(report, "engine.cycles"), *runs = find(versus, "runs");
+  return cycles && runs && std::any_of(runs->begin(), runs->end(), [&](const Json& run) {
+           return text_at(run, "machine") == "machine" && run["cycles"] == *cycles &&
+                  text_at(run, "hits") == text_at(report, "digest.hits");
+         });
+}
+
+Html twin_card(const Json& versus) {
+  Html out;
+  for (const Json& pair : versus["against"]) {
+    const bool equal_area = text_at(pair, "than") != "twin";
+    std::string text = fmt::format("{}, this machine is {}: {}",
+                                   equal_area ? "Against a twin of the same area" : "Against its conventional twin",
+                                   text_at(pair, "verdict"), times_text(pair["speed"], "the rays a cycle"));
+    text += fmt::format("; {}, {}.", times_text(pair["bytes"], "the bytes of memory a ray"),
+                        times_text(pair["joules"], "the energy"));
+    out += markup("<p>{}</p>\n", text);
+  }
+  for (const Json& machine : versus["machines"])
+    if (text_at(machine, "name") == "twin")
+      out += markup("<p>Its tightest part there: {}.</p>\n", words(text_at(machine, "limits")));
+  return out;
+}
+
+}  // namespace carousel::report::html
