@@ -3,6 +3,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -80,7 +81,10 @@ ringbus::RunResult simulate(const Prepared& p, const RenderJob& job, Workload& w
   options.meter = power;
   options.ray_times = true;
   options.heat = heat;
-  if (frame != nullptr) options.warm = {&frame->cached, 1};
+  if (frame != nullptr) {
+    frame->began = std::move(frame->cached);
+    options.warm = {.start = &frame->began};
+  }
   options.transport = job.ranks();
   if (job.ranks() != nullptr) {
     options.samples = 0;  // their clocks differ
@@ -108,12 +112,16 @@ void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
                  trace.name(), written.events);
 }
 
-void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResult& result,
+void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResult& result, const SeriesFrame* frame,
                  const InterruptScope& interrupt, bool quiet, report::Report& report) {
   report.bound = bound_of(result);
   if (!p.config().engine.what_if || job.sample() != nullptr || !job.divisible()) return;
   Phase phase("search");
-  report.bottleneck = find_bottleneck(p, job, result, interrupt.token(), quiet);
+  // The rays of a list do not depend on a seed.
+  const bool seeded = p.config().workload.kind == WorkloadConfig::Kind::kRays;
+  const ringbus::SearchedRun run{result, job.first_rays(), frame != nullptr ? &frame->began : nullptr,
+                                 seeded ? kNoiseSeeds : 0};
+  report.bottleneck = find_bottleneck(p, job, run, interrupt.token(), quiet, report.cycle_noise);
   report.incomplete |= !report.bottleneck->complete;
   phase.result(fmt::format("{} classes relaxed for {} rays each; scene, structure and first hits are those of the run",
                            report.bottleneck->gains.size(), report.bottleneck->rays));
@@ -195,7 +203,7 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     add_sampled_energy(report, p.config());
   }
   if (result.cycle) foretell_effects(p, job, report);
-  if (result.cycle && (frame == nullptr || frame->last)) find_limits(p, job, result, interrupt, quiet, report);
+  if (result.cycle && (frame == nullptr || frame->last)) find_limits(p, job, result, frame, interrupt, quiet, report);
   if (p.config().faults.compare) compare_without_faults(p, interrupt.token(), quiet, report);
   if (p.config().verify == Verify::kEffects) prove_effects(arguments, p, interrupt, quiet, report);
   judge_forecast(report);

@@ -9,6 +9,7 @@
 #include "app/run/render_job.h"
 #include "app/trace/trace_file.h"
 #include "report/run/report.h"
+#include "ringbus/results/class_use.h"
 #include "ringbus/results/memory_request.h"
 #include "ringbus/results/ray_times.h"
 
@@ -16,8 +17,9 @@ namespace carousel::app {
 
 /// A frame of a series, for run_rays().
 struct SeriesFrame {
-  std::vector<std::vector<std::uint64_t>> cached;  ///< lines of the shared caches, at its start and then at its end
-  bool last = false;                               ///< the search for the bottleneck follows it
+  ringbus::cycle::CacheLines cached;  ///< lines of the shared caches, at its start and then at its end
+  ringbus::cycle::CacheLines began;   ///< set by run_rays(): those at its start
+  bool last = false;                  ///< the search for the bottleneck follows it
 };
 
 /// Simulates the rays of `job`, and all that the configuration asks for besides: the verification of the hits, the

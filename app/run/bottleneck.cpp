@@ -1,6 +1,7 @@
 #include "app/run/bottleneck.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -17,14 +18,16 @@ namespace carousel::app {
 
 namespace {
 
-/// Some of the rays of a render job alone, or all of them; their picture is thrown away.
+/// Some of the rays of a render job alone, or all of them; their picture is thrown away. The places of some are those
+/// of the run's seed, also where the machine's picture has another one.
 class PilotWorkload final : public Workload {
  public:
   PilotWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,
                 std::uint64_t paths)
       : job_(prepared, config, first_hits) {
     if (paths < job_.first_rays())
-      job_.set_sample(&sample_.emplace(job_.draw(paths, ringbus::slots_of(prepared.config()))));
+      job_.set_sample(&sample_.emplace(job_.draw(paths, ringbus::slots_of(prepared.config()),
+                                                 static_cast<std::uint64_t>(prepared.config().image.seed))));
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   std::uint32_t shader(const RayResult& result) const override { return job_.workload().shader(result); }
@@ -44,10 +47,22 @@ class PilotWorkload final : public Workload {
   RenderJob job_;
 };
 
+std::optional<report::CycleNoise> noise_of(const ringbus::Bottleneck& found, const ringbus::RunResult& run) {
+  if (!found.noise) return std::nullopt;
+  const double cycles = static_cast<double>(run.cycle->cycles), f = found.noise->fraction;
+  return report::CycleNoise{f,
+                            static_cast<std::uint64_t>(std::floor(cycles * std::max(0.0, 1 - f))),
+                            static_cast<std::uint64_t>(std::ceil(cycles * (1 + f))),
+                            found.noise->seeds,
+                            found.noise_paths,
+                            found.noise->whole};
+}
+
 }  // namespace
 
-report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& run,
-                                   std::stop_token stop, bool quiet) {
+report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, const ringbus::SearchedRun& searched,
+                                   std::stop_token stop, bool quiet, std::optional<report::CycleNoise>& noise) {
+  const ringbus::RunResult& run = searched.result;
   if (!run.complete) return report::judge_gains({.complete = false});
   if (const auto small =
           ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), ringbus::slots_of(prepared.config())))
@@ -72,7 +87,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
         return std::make_unique<PilotWorkload>(
             prepared, machine, machine.image.seed == prepared.config().image.seed ? job.first_hits() : nullptr, paths);
       },
-      {run, job.first_rays()}, options, show);
+      searched, options, show);
+  noise = noise_of(found, run);
   spdlog::debug("search: simulated {} rays, {:.2f} times those of the run", found.simulated,
                 report::ratio(found.simulated, run.rays_completed));
   if (found.whole)

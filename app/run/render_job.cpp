@@ -135,8 +135,10 @@ void RenderJob::draw_sample(const Prepared& prepared, const Config& config, cons
   draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together) const {
-  return tracer_ ? shading::draw_tiles(order_, paths, together, seed_) : shading::draw_list(frame_rays_, paths, seed_);
+shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together,
+                                    std::optional<std::uint64_t> seed) const {
+  const std::uint64_t by = seed.value_or(seed_);
+  return tracer_ ? shading::draw_tiles(order_, paths, together, by) : shading::draw_list(frame_rays_, paths, by);
 }
 
 void RenderJob::set_sample(const shading::PathSample* sample) {

@@ -30,8 +30,9 @@ class RenderJob {
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
   /// Draws about `paths` of the first rays, over all of them, for a pilot: tiles of the picture, places of at least
-  /// `together` paths if they are many, or runs of the list.
-  shading::PathSample draw(std::uint64_t paths, std::uint64_t together) const;
+  /// `together` paths if they are many, or runs of the list. `seed`: if not that of the picture.
+  shading::PathSample draw(std::uint64_t paths, std::uint64_t together,
+                           std::optional<std::uint64_t> seed = std::nullopt) const;
   /// Only these of the first rays are traced; `sample` must outlive the job. Before the first ray.
   void set_sample(const shading::PathSample* sample);
   /// The paths that `sampling` draws; null if the whole frame is traced.

@@ -87,6 +87,7 @@ std::vector<ResultColumn> result_columns(const std::vector<std::string>& paths) 
                                 {"mrays_per_second", "throughput.whole.mrays_per_second_at_clock", true, kCycleRun},
                                 {"limits", "bottleneck.limits", false, kCycleRun},
                                 {"gain", "", false, kCycleRun},
+                                {kNoiseColumn, "cycle_noise.fraction", false, kCycleRun},
                                 {"bytes", "", false, kCycleRun},
                                 {"tests_per_ray", "throughput.tests_per_ray"},
                                 {"nj_per_ray", "energy.nj_per_ray", false, kCostProfile},

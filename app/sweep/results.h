@@ -25,6 +25,9 @@ struct ResultColumn {
   ResultOf of = ResultOf::kEveryRun;
 };
 
+/// The column of the noise of a point's cycles, as a fraction of them (cycle_noise of the report).
+inline constexpr const char* kNoiseColumn = "noise";
+
 /// The results that every sweep shows, and those of `--result`, paths as in throughput.whole.rays_per_kilocycle.
 std::vector<ResultColumn> result_columns(const std::vector<std::string>& paths);
 

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "app/sweep/noise.h"
 #include "app/sweep/sweep_files.h"
 #include "report/text/number_text.h"
 
@@ -67,8 +68,9 @@ std::vector<std::size_t> column_order(const SweepRows& rows, const std::vector<G
   return order;
 }
 
+/// `ties`: rows whose first result is marked.
 std::string rows_text(const SweepRows& rows, const std::vector<std::size_t>& chosen, const std::vector<Goal>& goals,
-                      std::size_t width) {
+                      const std::vector<bool>& ties, std::size_t width) {
   std::vector<std::vector<std::string>> columns;
   for (std::size_t k = 0; k < rows.keys.size(); ++k) {
     auto& column = columns.emplace_back(1, short_name(rows.keys[k], rows.keys));
@@ -80,7 +82,8 @@ std::string rows_text(const SweepRows& rows, const std::vector<std::size_t>& cho
     for (const std::size_t row : chosen) {
       const SweepRow& r = rows.rows[row];
       const std::string none = i != order.front() ? "-" : r.error ? "failed" : "missing";
-      column.push_back(i < r.results.size() ? shown(r.results[i]) : none);
+      const char* mark = i == order.front() && ties[row] ? "~" : "";
+      column.push_back(i < r.results.size() ? mark + shown(r.results[i]) : none);
     }
   }
   return columns.empty()
@@ -122,11 +125,15 @@ std::string sweep_table(const SweepRows& rows, const std::vector<Goal>& goals, s
     out += fmt::format("The best {} of {} points by {}:\n", kMostRows, order.size(), rows.columns[goal.column].name);
     order.resize(kMostRows);
   }
-  out += rows_text(rows, order, goals, width);
+  const std::vector<bool> ties = ties_with_best(rows, goal);
+  out += rows_text(rows, order, goals, ties, width);
+  if (std::find(ties.begin(), ties.end(), true) != ties.end())
+    out += fmt::format("~ another seed of the picture may turn the order with the best {} round\n",
+                       rows.columns[goal.column].name);
   if (!goals.empty()) {
     out += fmt::format("\nPareto front of {} and {}:\n", rows.columns[goals[0].column].name,
                        rows.columns[goals[1].column].name);
-    out += rows_text(rows, pareto_front(rows, goals), goals, width);
+    out += rows_text(rows, pareto_front(rows, goals), goals, ties, width);
   }
   if (rows.columns.empty()) return out;
   if (const std::string effects = effects_text(rows, goal.column, width); !effects.empty())

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <cmath>
 #include <functional>
 #include <map>
 #include <string_view>
@@ -37,14 +38,15 @@ ComparedRow row_of(std::string name, std::string unit, Values values) {
 
 struct NumberRow {
   const char *name, *pointer, *unit;
+  bool of_cycles = false;
 };
 
 constexpr NumberRow kThroughput[] = {
-    {"whole run", "/throughput/whole/rays_per_kilocycle", "rays/kilocycle"},
+    {"whole run", "/throughput/whole/rays_per_kilocycle", "rays/kilocycle", true},
     {"steady state", "/throughput/steady/rays_per_kilocycle", "rays/kilocycle"},
-    {"whole run, at its clock", "/throughput/whole/mrays_per_second_at_clock", "Mrays/s"},
+    {"whole run, at its clock", "/throughput/whole/mrays_per_second_at_clock", "Mrays/s", true},
     {"on this host", "/host/rays_per_second", "rays/s"},
-    {"length", "/engine/cycles", "cycles"},
+    {"length", "/engine/cycles", "cycles", true},
     {"rays", "/rays/completed", "rays"},
     {"tests", "/throughput/tests_per_ray", "tests/ray"},
     {"packets", "/throughput/packets_per_ray", "packets/ray"},
@@ -71,8 +73,19 @@ ComparedSection numbers(const char* name, const NumberRow (&rows)[N], const std:
     Values values;
     for (const ComparedRun& run : runs) values.push_back(number_at(run.report, row.pointer));
     out.rows.push_back(row_of(row.name, row.unit, std::move(values)));
+    out.rows.back().of_cycles = row.of_cycles;
   }
   return out;
+}
+
+/// As Comparison::within_noise. Each noise is that between two runs of one machine, and so the root of 2 times the
+/// deviation of one: the noise between two machines has the mean of both squares.
+std::optional<double> noise_that_holds(const Json& first, const Json& run) {
+  const auto a = number_at(first, "/engine/cycles"), b = number_at(run, "/engine/cycles");
+  const auto of_a = number_at(first, "/cycle_noise/fraction"), of_b = number_at(run, "/cycle_noise/fraction");
+  if (!a || !b || *a == 0 || !(of_a || of_b)) return std::nullopt;
+  const double noise = std::sqrt((std::pow(of_a ? *of_a : *of_b, 2) + std::pow(of_b ? *of_b : *of_a, 2)) / 2);
+  return std::abs(*b / *a - 1) <= noise ? std::optional(noise) : std::nullopt;
 }
 
 /// A section whose rows follow from the report: each run gives its own, and the section has all of them.
@@ -102,7 +115,7 @@ Pairs cycle_ledger(const Json& report) {
   for (const Json& resource : report.value("resources", Json::array())) {
     if (!resource.contains("units")) continue;
     for (const auto& [unit, causes] : resource["units"].items()) {
-      if (!causes.is_object()) continue;
+      if (!causes.is_object() || !causes.contains("busy")) continue;
       for (const auto& [cause, cycles] : causes.items()) {
         const auto [entry, fresh] = at.try_emplace(unit + " " + cause, out.size());
         if (fresh) out.emplace_back(entry->first, 0);
@@ -169,6 +182,8 @@ Comparison compare_runs(const std::vector<ComparedRun>& runs, const std::string&
   Comparison out;
   std::vector<const Json*> reports;
   for (const ComparedRun& run : runs) {
+    const bool is_first = &run == runs.data();
+    out.within_noise.push_back(is_first ? std::nullopt : noise_that_holds(runs.front().report, run.report));
     const Json& first = runs.front().report;
     out.runs.push_back(run.name);
     out.same_hits.push_back(text_at(run.report, "/digest/hits") == text_at(first, "/digest/hits"));
@@ -239,6 +254,7 @@ nlohmann::ordered_json comparison_json(const Comparison& c, bool all) {
            {"identical", c.identical},
            {"same_hits", c.same_hits},
            {"same_picture", c.same_picture},
+           {"within_noise", values(c.within_noise)},
            {"same_configuration", c.same_configuration},
            {"deterministic", c.deterministic},
            {"texts", texts(c.texts)},

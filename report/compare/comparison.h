@@ -22,6 +22,7 @@ struct ComparedRow {
   std::string name, unit;
   std::vector<std::optional<double>> values;  ///< by run
   std::vector<std::optional<double>> ratios;  ///< ratio of each value to the first run's; that of the first is 1
+  bool of_cycles = false;                     ///< it follows from the cycles of the run, and has their noise
 };
 
 /// Rows that belong together: throughput, a ledger, memory.
@@ -43,7 +44,11 @@ struct Comparison {
   bool same_configuration = false;            ///< apart from the number of host threads
   bool deterministic = true;                  ///< every run was; otherwise counts and times may differ from run to run
   bool identical = false;                     ///< everything outside of `host` is equal
-  std::vector<ComparedText> texts;            ///< the verdict
+  /// By run: the part by which its cycles and those of the first may differ for another seed of the picture, by the
+  /// noise of both or of the one that knows it. Absent for the first, where neither knows it, and where they differ by
+  /// more.
+  std::vector<std::optional<double>> within_noise;
+  std::vector<ComparedText> texts;  ///< the verdict
   std::vector<ComparedSection> sections;
   std::vector<ComparedText> configuration;  ///< the keys that differ
   std::vector<ComparedText> differences;    ///< all other values outside of `host` that differ, by their path

@@ -40,14 +40,28 @@ std::string ratio_text(const ComparedRow& row, std::size_t run) {
   return row.ratios[run] ? fmt::format("x{:.3g}", *row.ratios[run]) : "-";
 }
 
-std::string section_text(const ComparedSection& section, std::size_t runs) {
+/// The runs whose cycles another seed may make as many as the first run's.
+std::string noise_text(const Comparison& c) {
+  std::string out;
+  for (std::size_t r = 1; r < c.within_noise.size(); ++r)
+    if (const auto& noise = c.within_noise[r])
+      out += fmt::format(
+          "noise          {} is not told from A by its cycles: another seed of the picture changes them by "
+          "up to {} (~)\n",
+          letter(r), percent(*noise));
+  return out;
+}
+
+std::string section_text(const ComparedSection& section, const Comparison& of) {
+  const std::size_t runs = of.runs.size();
   std::vector<std::vector<std::string>> cells{{section.name, "unit"}};
   for (std::size_t r = 0; r < runs; ++r) cells[0].push_back(letter(r));
   for (std::size_t r = 1; r < runs; ++r) cells[0].push_back(letter(r) + "/A");
   for (const ComparedRow& row : section.rows) {
     std::vector<std::string>& line = cells.emplace_back(std::vector<std::string>{row.name, row.unit});
     for (std::size_t r = 0; r < runs; ++r) line.push_back(value_text(row, r));
-    for (std::size_t r = 1; r < runs; ++r) line.push_back(ratio_text(row, r));
+    for (std::size_t r = 1; r < runs; ++r)
+      line.push_back((row.of_cycles && of.within_noise[r] ? "~" : "") + ratio_text(row, r));
   }
   std::vector<std::size_t> widths(cells[0].size());
   for (const auto& line : cells)
@@ -108,8 +122,8 @@ std::string comparison_table(const Comparison& c, bool all) {
     for (std::size_t r = 0; r < runs; ++r)
       out += fmt::format("{:<13}  {}  {}\n", r == 0 ? text.name : "", letter(r),
                          text.texts[r].empty() ? "-" : text.texts[r]);
-  out += '\n';
-  for (const ComparedSection& section : c.sections) out += section_text(section, runs);
+  out += noise_text(c) + '\n';
+  for (const ComparedSection& section : c.sections) out += section_text(section, c);
   if (!c.configuration.empty()) out += "configuration\n" + texts_of(c.configuration) + '\n';
 
   // Two runs of one machine under virtual time ought to be equal: then the values themselves are the news.

@@ -89,6 +89,7 @@ struct Report {
   std::optional<std::vector<Charge>> charges;
   std::optional<Bound> bound;
   std::optional<Bottleneck> bottleneck;
+  std::optional<CycleNoise> cycle_noise;
   std::optional<Faults> faults;
   std::optional<Verify> verify;
   Digest digest;
@@ -152,6 +153,9 @@ void describe(V& v, const Report& r) {
   v.section("charges", r.charges, "what costs nothing in this run, and the keys that charge it (cycle)");
   v.section("bound", r.bound, "rate that each class of parts alone would allow");
   v.section("bottleneck", r.bottleneck, "class of parts that limits the machine, found by relaxing each in turn");
+  v.section("cycle_noise", r.cycle_noise,
+            "interval of engine.cycles in which those with another seed of the picture lie, by simulations with other "
+            "seeds; found with the bottleneck");
   v.section("faults", r.faults, "faults that were asked for and their cost");
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "digests of the result: equal digests mean equal hits and an equal picture");

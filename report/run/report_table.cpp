@@ -357,6 +357,7 @@ std::string report_table(const Report& report) {
   if (report.ray_time) table.text(ray_time_table(*report.ray_time));
   if (report.heat) table.text(heat_table(*report.heat));
   if (report.bottleneck) table.text(verdict_table(*report.bottleneck));
+  if (report.cycle_noise) table.text(noise_table(*report.cycle_noise));
   if (report.charges && !report.charges->empty()) {
     std::string names;
     for (const Charge& charge : *report.charges) names += (names.empty() ? "" : ", ") + charge.name;

@@ -168,6 +168,10 @@ void cycle_words(Words& w) {
       "N to N of the rays, N of the time: *", "bottleneck.phases",
       "a stretch of the pilot's completed rays, its part of the cycles, and the class that gains most in it; shown "
       "if the class changes");
+  w.line("noise").item("N to N cycles with another seed of the picture, N more or less, by N seeds of N paths",
+                       "cycle_noise.fraction",
+                       "the interval of the run's cycles: those with another seed lie in it, by simulations of pilots "
+                       "or of the whole frame with other seeds");
   w.line("not charged").item("*", "charges[].name", "what costs nothing in this run; run --charge-all charges it");
   w.line("bound").item(
       "N rays per kilocycle by *, reached N", "bound.rays_per_kilocycle",

@@ -30,6 +30,12 @@ std::string verdict_table(const Bottleneck& found) {
   return out;
 }
 
+std::string noise_table(const CycleNoise& noise) {
+  return fmt::format(
+      "{:<13}{} to {} cycles with another seed of the picture, {} more or less, by {} seeds of {} paths\n", "noise",
+      grouped(noise.low), grouped(noise.high), percent(noise.fraction), noise.seeds, grouped(noise.paths));
+}
+
 std::string spared_table(const EffectsSpared& spared) {
   std::string out =
       fmt::format("{:<13}spared {} of the cycles: all effects would cost {} cycles ({} to {})\n", "effects",

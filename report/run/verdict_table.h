@@ -10,6 +10,9 @@ namespace carousel::report {
 /// The lines of a run's table about what limits the machine, each with its end.
 std::string verdict_table(const Bottleneck& found);
 
+/// The line about the interval of a run's cycles, with its end.
+std::string noise_table(const CycleNoise& noise);
+
 /// The lines about the cycles that the choice of effects spared, each with its end.
 std::string spared_table(const EffectsSpared& spared);
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -146,6 +147,26 @@ void describe(V& v, const Bottleneck& r) {
   v.section(
       "phases", r.phases,
       "stretches in which different classes limit the machine, in the order of time; one if it is always the same");
+}
+
+/// The interval of a run's own cycles.
+struct CycleNoise {
+  double fraction = 0;
+  std::uint64_t low = 0, high = 0;
+  std::uint64_t seeds = 0, paths = 0;
+  bool whole_frame = false;
+};
+
+template <class V>
+void describe(V& v, const CycleNoise& r) {
+  v.field("fraction", r.fraction, "fraction",
+          "half of the interval; runs of one machine with two seeds of the picture differ by less (95 %)");
+  v.field("low", r.low, "cycles", "lower end of the interval around this run's cycles");
+  v.field("high", r.high, "cycles", "upper end of the interval");
+  v.field("seeds", r.seeds, "seeds", "other seeds of the picture that were simulated");
+  v.field("paths", r.paths, "paths", "paths of each of these simulations");
+  v.field("whole_frame", r.whole_frame, "",
+          "true if they were whole frames; else pilots, whose noise is taken to fall with the root of the paths");
 }
 
 }  // namespace carousel::report

@@ -25,11 +25,16 @@ struct ProgressSample {
   friend bool operator==(const ProgressSample&, const ProgressSample&) = default;
 };
 
+/// Lines of a machine's caches, a list a cache, the oldest of a set first.
+using CacheLines = std::vector<std::vector<std::uint64_t>>;
+
 /// Lines that a machine's caches hold before it starts, so that a pilot has the frame's share of first misses: a part
-/// of those that they held at the end of the frame's run, drawn line by line.
+/// of those that they held at the end of the frame's run, drawn line by line. The rest are those that they held at its
+/// start, if any; so a line that they held at both times is there.
 struct WarmCaches {
-  const std::vector<std::vector<std::uint64_t>>* lines = nullptr;  ///< by cache; null: the caches are cold
+  const CacheLines* lines = nullptr;  ///< at the end; null: the caches are cold
   double part = 0;
+  const CacheLines* start = nullptr;  ///< null: they were cold
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -1,7 +1,6 @@
 #include "ringbus/verdict/bottleneck_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <map>
 #include <optional>
@@ -9,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "core/config/own_sections.h"
 #include "core/numeric/worth_naming.h"
 #include "ringbus/verdict/foretell.h"
 #include "ringbus/verdict/phases.h"
@@ -24,11 +22,6 @@ namespace {
 
 double rays_per_kilocycle(std::uint64_t rays, double cycles) {
   return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
-}
-
-/// A seed of the same range, far from those that users count up from.
-std::int64_t other_seed(std::int64_t seed, std::uint64_t k) {
-  return static_cast<std::int64_t>((static_cast<std::uint64_t>(seed) + k * 0x9e3779b97f4a7c15ull) >> 1);
 }
 
 class Search {
@@ -50,6 +43,7 @@ class Search {
     out_.paths = pilot_paths(config_, run_.paths, frame, first / (groups.size() + 1));
     begin("first pilot", groups.size());
     screen(groups);
+    if (!out_.whole && out_.complete) find_noise();
     note_phases();
     std::vector<std::size_t> worth = worth_a_second_look();
     const std::uint64_t larger =
@@ -291,8 +285,29 @@ class Search {
     return out;
   }
 
+  /// Notes the noise of the cycles by the present pilot's, with the run's seed and with others.
+  void note_noise(std::vector<double> others) {
+    others.push_back(static_cast<double>(base_.cycle->cycles));
+    out_.noise = cycle_noise(others, static_cast<double>(out_.paths) / static_cast<double>(run_.paths));
+    out_.noise_paths = out_.paths;
+  }
+
+  /// Simulates the pilot with other seeds: its places in the picture are the same, and their rays are others.
+  void find_noise() {
+    if (run_.noise_seeds == 0) return;
+    pilots_.begin("other seeds", run_.noise_seeds, out_.paths);
+    std::deque<Config> machines;
+    std::vector<const Config*> which;
+    for (std::uint64_t k = 1; k <= run_.noise_seeds; ++k)
+      which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
+    std::vector<double> cycles;
+    for (const RunResult& result : simulate(which))
+      if (out_.complete) cycles.push_back(static_cast<double>(result.cycle->cycles));
+    if (out_.complete) note_noise(std::move(cycles));
+  }
+
   /// Simulates the whole frame with other seeds of the picture, as configured and with the classes that may be named,
-  /// and widens the intervals of these to hold what they gain there.
+  /// widens the intervals of these to hold what they gain there, and notes the noise of the cycles.
   void replicate() {
     constexpr std::uint64_t kReplicates = 2;
     constexpr std::size_t kMost = 3;
@@ -301,28 +316,31 @@ class Search {
       if (worth_naming(out_.gains[i].gain, out_.gains[i].low)) named.push_back(i);
     greatest_first(named);
     named.resize(std::min(named.size(), kMost));
-    if (named.empty()) return;
-    begin("other seeds", named.size() + 1);
-    pilots_.expect_more((kReplicates - 1) * (named.size() + 1));
-    for (std::uint64_t k = 1; k <= kReplicates; ++k) {
-      std::deque<Config> machines{config_};
-      for (const std::size_t i : named) machines.push_back(what_ifs_[i].relaxed);
-      std::vector<const Config*> which;
-      for (Config& machine : machines) {
-        machine.image.seed = other_seed(config_.image.seed, k);
-        which.push_back(&machine);
-      }
-      const std::vector<RunResult> results = simulate(which);
-      if (!out_.complete) return;
-      for (std::size_t n = 0; n < named.size(); ++n) {
+    const std::uint64_t replicates = named.empty() ? 0 : kReplicates;
+    std::deque<Config> machines;
+    for (std::uint64_t k = 1; k <= std::max(replicates, run_.noise_seeds); ++k) {
+      machines.push_back(with_other_seed(config_, k));
+      for (const std::size_t i : named)
+        if (k <= replicates) machines.push_back(with_other_seed(what_ifs_[i].relaxed, k));
+    }
+    if (machines.empty()) return;
+    pilots_.begin("other seeds", machines.size(), out_.paths);
+    std::vector<const Config*> which;
+    for (const Config& machine : machines) which.push_back(&machine);
+    const std::vector<RunResult> results = simulate(which);
+    if (!out_.complete) return;
+    std::vector<double> cycles;
+    for (auto at = results.begin(); at != results.end();) {
+      cycles.push_back(static_cast<double>(at++->cycle->cycles));
+      for (std::size_t n = 0; n < named.size() && cycles.size() <= replicates; ++n) {
         Gain& gain = out_.gains[named[n]];
-        const double there =
-            static_cast<double>(results.front().cycle->cycles) / static_cast<double>(results[n + 1].cycle->cycles) - 1;
+        const double there = cycles.back() / static_cast<double>(at++->cycle->cycles) - 1;
         gain.low = std::min(gain.low, there);
         gain.high = std::max(gain.high, there);
       }
-      out_.replicates = k;
     }
+    out_.replicates = replicates;
+    if (run_.noise_seeds > 0) note_noise(std::move(cycles));
   }
 
   void greatest_first(std::vector<std::size_t>& classes) const {
@@ -363,23 +381,6 @@ class Search {
 };
 
 }  // namespace
-
-std::uint64_t slots_of(const Config& config) {
-  return static_cast<std::uint64_t>(all_slots(config));
-}
-
-std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
-  // Three times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
-  constexpr std::uint64_t kFills = 3, kLeastRays = 3000, kMostFills = 32, kMostRays = 80'000;
-  const std::uint64_t fill = 2 * fill_rays(slots_of(config));
-  const double rays_each =
-      static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
-  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(kMostRays, kMostFills * fill);
-  const auto pilot =
-      static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
-  // A pilot of most of the frame spares little, and the frame leaves no question.
-  return 3 * pilot >= 2 * paths ? paths : pilot;
-}
 
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,

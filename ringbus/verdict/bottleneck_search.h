@@ -1,11 +1,13 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
+#include "ringbus/verdict/cycle_noise.h"
 #include "ringbus/verdict/pilot_runs.h"
 
 namespace carousel::ringbus {
@@ -33,16 +35,18 @@ struct GainPhase {
 struct Bottleneck {
   bool complete = true;  ///< false: interrupted; there are no gains
   std::string unlike;    ///< how the pilot differs from the run; empty if it is like it; else there are no gains
-  double rays_per_kilocycle = 0;  ///< throughput of the machine as configured, over the whole frame
-  std::uint64_t paths = 0;        ///< paths of the pilot
-  std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
-  std::uint64_t simulated = 0;    ///< rays of all simulations of the search
-  bool whole = false;             ///< the pilot is the whole frame
-  std::uint64_t replicates = 0;   ///< other seeds with which the whole frame was simulated
-  double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
-  double uncertainty = 0;         ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
-  std::vector<Gain> gains;        ///< greatest first
-  std::vector<GainPhase> phases;  ///< of the first pilot, in the order of time; one if nothing changes
+  double rays_per_kilocycle = 0;    ///< throughput of the machine as configured, over the whole frame
+  std::uint64_t paths = 0;          ///< paths of the pilot
+  std::uint64_t rays = 0;           ///< rays of the pilot, simulated for each class
+  std::uint64_t simulated = 0;      ///< rays of all simulations of the search
+  bool whole = false;               ///< the pilot is the whole frame
+  std::uint64_t replicates = 0;     ///< other seeds with which the whole frame was simulated
+  double deviation = 0;             ///< distance of the run's cycles from those that the pilot foretells, as a fraction
+  double uncertainty = 0;           ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
+  std::optional<CycleNoise> noise;  ///< of the run's cycles
+  std::uint64_t noise_paths = 0;    ///< paths of each simulation that it was found with
+  std::vector<Gain> gains;          ///< greatest first
+  std::vector<GainPhase> phases;    ///< of the first pilot, in the order of time; one if nothing changes
 };
 
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
@@ -58,19 +62,13 @@ struct Bottleneck {
 /// the run finds out nothing.
 ///
 /// Of a whole frame the classes that may be named are simulated with two other seeds of the picture besides, and their
-/// intervals widened to hold what they gain there.
+/// intervals widened to hold what they gain there. The machine as configured is simulated with run.noise_seeds other
+/// seeds, the first pilot or the whole frame, for the noise of the run's cycles.
 ///
 /// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
 /// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});
-
-/// The ray slots of a machine.
-std::uint64_t slots_of(const Config& config);
-
-/// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
-/// is most of the frame.
-std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);
 
 }  // namespace carousel::ringbus

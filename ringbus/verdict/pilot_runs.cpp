@@ -2,11 +2,38 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
+#include "core/config/own_sections.h"
 #include "core/system/executor.h"
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/verdict/steady_state.h"
 
 namespace carousel::ringbus {
+
+std::uint64_t slots_of(const Config& config) {
+  return static_cast<std::uint64_t>(all_slots(config));
+}
+
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
+  // Three times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
+  constexpr std::uint64_t kFills = 3, kLeastRays = 3000, kMostFills = 32, kMostRays = 80'000;
+  const std::uint64_t fill = 2 * fill_rays(slots_of(config));
+  const double rays_each =
+      static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
+  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(kMostRays, kMostFills * fill);
+  const auto pilot =
+      static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
+  // A pilot of most of the frame spares little, and the frame leaves no question.
+  return 3 * pilot >= 2 * paths ? paths : pilot;
+}
+
+Config with_other_seed(const Config& machine, std::uint64_t k) {
+  Config out = machine;
+  const auto seed = static_cast<std::uint64_t>(machine.image.seed);
+  out.image.seed = static_cast<std::int64_t>((seed + k * 0x9e3779b97f4a7c15ull) >> 1);
+  return out;
+}
 
 void PilotRuns::begin(const char* stage, std::size_t machines, std::uint64_t paths) {
   paths_ = paths;
@@ -18,7 +45,8 @@ RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
   RunOptions options = options_;
   options.threads = threads;
   // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
-  options.warm = {&run_.result.cycle->cached_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths)};
+  options.warm = {&run_.result.cycle->cached_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths),
+                  run_.warm};
   std::uint64_t shown = 0;
   options.progress = [&](std::uint64_t completed) {
     const std::lock_guard lock(mutex_);

@@ -18,8 +18,20 @@ namespace carousel::ringbus {
 /// The run whose bottleneck is searched for.
 struct SearchedRun {
   const RunResult& result;
-  std::uint64_t paths = 0;  ///< paths, or rays of a list, that the frame begins
+  std::uint64_t paths = 0;                  ///< paths, or rays of a list, that the frame begins
+  const cycle::CacheLines* warm = nullptr;  ///< that its caches held at its start; null: they were cold
+  std::uint64_t noise_seeds = 0;  ///< other seeds of the picture to find the noise of its cycles with; 0: no noise
 };
+
+/// The ray slots of a machine.
+std::uint64_t slots_of(const Config& config);
+
+/// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
+/// is most of the frame.
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);
+
+/// The machine with the picture's k-th other seed, of the same range, far from those that users count up from.
+Config with_other_seed(const Config& machine, std::uint64_t k);
 
 /// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
 /// machine.

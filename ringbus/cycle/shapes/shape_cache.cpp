@@ -50,11 +50,12 @@ MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
   return out;
 }
 
-void ShapeCache::warm(std::span<const std::uint64_t> lines, double part) {
+void ShapeCache::warm(std::span<const std::uint64_t> lines, double from, double to) {
   for (const std::uint64_t line : lines) {
     const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull,
                         drawn = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
-    if (static_cast<double>(drawn >> 11) * 0x1p-53 < part) tags_.insert(line);
+    const double at = static_cast<double>(drawn >> 11) * 0x1p-53;
+    if (from <= at && at < to) tags_.insert(line);
   }
 }
 

@@ -58,8 +58,8 @@ class ShapeCache final : public Agent {
 
   /// This cache asks an L2 where other caches ask the memory.
   void ask_a_cache() { asks_a_cache_ = true; }
-  /// Holds part of these lines from the start.
-  void warm(std::span<const std::uint64_t> lines, double part);
+  /// Holds those of these lines from the start whose number between 0 and 1, which each line has, is in [from, to).
+  void warm(std::span<const std::uint64_t> lines, double from, double to);
   std::vector<std::uint64_t> lines() const { return tags_.lines(); }
   /// The run is over: sends all lines that have been written and are still here to memory, in the order of their
   /// addresses.

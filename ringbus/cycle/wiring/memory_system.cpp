@@ -115,8 +115,12 @@ std::optional<DramUse> MemorySystem::dram_use(Cycle end) const {
 }
 
 void MemorySystem::warm(const WarmCaches& from) {
-  if (from.lines == nullptr || from.lines->size() != caches_.size()) return;
-  for (std::size_t c = 0; c < caches_.size(); ++c) caches_[c]->warm((*from.lines)[c], from.part);
+  const auto hold = [&](const CacheLines* lines, double begin, double end) {
+    if (lines == nullptr || lines->size() != caches_.size()) return;
+    for (std::size_t c = 0; c < caches_.size(); ++c) caches_[c]->warm((*lines)[c], begin, end);
+  };
+  hold(from.start, from.part, 1);  // first, since they are older
+  hold(from.lines, 0, from.part);
 }
 
 CacheDrain MemorySystem::drain(Cycle end, const std::vector<Agent*>& between, Cycle quiet_from) {

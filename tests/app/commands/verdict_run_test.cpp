@@ -61,6 +61,27 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
   EXPECT_LE(real, named["high"].get<double>() + 0.01);
   EXPECT_LT(named["low"], named["gain"]);
   EXPECT_LT(named["gain"], named["high"]);
+  const Json& noise = report["cycle_noise"];
+  EXPECT_FALSE(noise["whole_frame"]);
+  EXPECT_LT(noise["fraction"], 0.1);
+  const Json other = run(kTerrain, {"image.seed=77"});
+  EXPECT_GE(other["engine"]["cycles"], noise["low"]) << noise.dump();
+  EXPECT_LE(other["engine"]["cycles"], noise["high"]) << noise.dump();
+  EXPECT_NE(other["engine"]["cycles"], report["engine"]["cycles"]);
+}
+
+// The second frame finds in the caches what the first one left there, and the search finds it there too: else all that
+// it simulates would wait for a memory that the frame hardly needed.
+TEST_F(VerdictRun, TheLastFrameOfASeriesIsSearchedWithItsWarmCaches) {
+  const Json report = run(kTerrain, {"engine.what_if=true", "image.width=48", "image.height=36", "image.samples=1",
+                                     "frames={count: 2, step: 0, update: none}", "memory.l2_kib=4096",
+                                     "memory.shape_buffer_kib=4", "memory.dram_latency_cycles=4000"});
+  const Json& rows = report["frames"]["rows"];
+  ASSERT_GT(rows[0]["cycles"].get<double>(), 1.5 * rows[1]["cycles"].get<double>()) << rows.dump(1);
+  ASSERT_TRUE(report["bottleneck"]["whole_frame"]) << report["bottleneck"].dump(1);
+  for (const Json& gain : report["bottleneck"]["gains"]) EXPECT_GT(gain["gain"], -0.1) << gain.dump();
+  EXPECT_TRUE(report["cycle_noise"]["whole_frame"]);
+  EXPECT_LT(report["cycle_noise"]["fraction"], 0.3);
 }
 
 // 300 paths hardly fill 256 slots; the size that is told fills them, and no simulation is spent on the small one.
@@ -71,6 +92,7 @@ TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
   const Json& told = small["bottleneck"];
   EXPECT_EQ(told["limits"], "");
   EXPECT_TRUE(told["gains"].empty());
+  EXPECT_FALSE(small.contains("cycle_noise"));
   EXPECT_EQ(told["frame_too_small"]["paths"], 300);
   EXPECT_EQ(told["frame_too_small"]["slots"], 256);
   const auto least = told["frame_too_small"]["least_paths"].get<std::uint64_t>();

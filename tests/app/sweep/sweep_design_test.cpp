@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "app/sweep/analysis.h"
+#include "app/sweep/noise.h"
 #include "app/sweep/plan/design.h"
 #include "core/system/error.h"
 
@@ -147,6 +148,38 @@ TEST(SweepAnalysis, IntervalsAreStudents) {
   ASSERT_EQ(effects.size(), 1u) << "a key with one value has no effect";
   EXPECT_NEAR(effects[0].levels[0].effect, -2.5, 1e-9);
   EXPECT_NEAR(effects[0].levels[0].half_width.value_or(0), 4.30265 * std::sqrt(5.0 / 4), 1e-4);
+}
+
+SweepRows with_noise(const std::vector<std::pair<double, double>>& cycles_and_noise) {
+  SweepRows out;
+  out.keys = {"topology.resources"};
+  out.columns = {{"cycles", "engine.cycles"}, {kNoiseColumn, "cycle_noise.fraction"}, {"bytes", "x"}};
+  for (const auto& [cycles, noise] : cycles_and_noise) {
+    SweepRow& row = out.rows.emplace_back();
+    row.finished = true;
+    row.point.keys = {{"topology.resources", std::to_string(out.rows.size())}};
+    row.results = {cycles, noise > 0 ? nlohmann::ordered_json(noise) : nlohmann::ordered_json(), cycles};
+  }
+  return out;
+}
+
+TEST(SweepNoise, TiesAreWithinTheNoiseOfTheReports) {
+  const SweepRows rows = with_noise({{104, 0.05}, {100, 0.05}, {106, 0.05}, {104, 0.001}, {103, 0}});
+  EXPECT_THAT(ties_with_best(rows, {0, false}), ElementsAre(true, false, false, false, true));
+  EXPECT_THAT(ties_with_best(rows, {0, true}), ElementsAre(true, false, false, true, true)) << "106 is the best";
+  EXPECT_THAT(ties_with_best(rows, {2, false}), testing::Each(false)) << "bytes do not follow from the cycles";
+}
+
+// Four seeds of two machines, each with a deviation of 0.8 %: 2.447 (t, six degrees of freedom) x root 2 x 0.8 % = 2.8
+// %.
+TEST(SweepNoise, TiesAreWithinTheNoiseOfRepeatedPoints) {
+  SweepRows rows = with_noise({{99, 0}, {100, 0}, {100, 0}, {101, 0}, {103, 0}, {104, 0}, {104, 0}, {105, 0}});
+  rows.keys = {"topology.resources", "image.seed"};
+  for (std::size_t i = 0; i < 8; ++i)
+    rows.rows[i].point.keys = {{"topology.resources", i < 4 ? "1" : "2"}, {"image.seed", std::to_string(i % 4)}};
+  EXPECT_THAT(ties_with_best(rows, {2, false}), ElementsAre(false, true, true, true, false, false, false, false));
+  rows.rows[4].results[2] = 101.5;
+  EXPECT_TRUE(ties_with_best(rows, {2, false})[4]);
 }
 
 }  // namespace

@@ -51,6 +51,29 @@ TEST(CompareRuns, CountsTheKeysThatThePatternHides) {
   EXPECT_TRUE(json["configuration"].empty());
 }
 
+TEST(CompareRuns, DoesNotTellRunsApartWithinTheNoiseOfTheirCycles) {
+  const auto with_noise = [](double cycles, double noise) {
+    Json out = report(cycles);
+    if (noise > 0) out["cycle_noise"]["fraction"] = noise;
+    return out;
+  };
+  const auto within = [&](double noise_of_a, double cycles_of_b, double noise_of_b) {
+    return compare_runs({{"a", with_noise(100, noise_of_a)}, {"b", with_noise(cycles_of_b, noise_of_b)}})
+        .within_noise.at(1);
+  };
+  EXPECT_EQ(within(0.05, 104, 0), 0.05) << "one knows it";
+  EXPECT_EQ(within(0, 96, 0.05), 0.05);
+  EXPECT_FALSE(within(0.05, 106, 0));
+  EXPECT_FALSE(within(0, 104, 0)) << "nobody knows it";
+  EXPECT_TRUE(within(0.01, 104, 0.07)) << "the root of the mean of both squares is 0.05";
+  EXPECT_FALSE(within(0.01, 106, 0.07));
+  const Comparison c = compare_runs({{"a", with_noise(100, 0.05)}, {"b", with_noise(104, 0)}});
+  const std::string table = comparison_table(c, false);
+  EXPECT_NE(table.find("noise          B is not told from A"), std::string::npos) << table;
+  EXPECT_NE(table.find("~x1.04"), std::string::npos) << table;
+  EXPECT_EQ(comparison_json(c, false)["within_noise"], Json({nullptr, 0.05}));
+}
+
 TEST(CompareRuns, GivesValuesAndRatios) {
   const Comparison c = compare_runs({{"a", report(100)}, {"b", report(50, "bb", 8)}, {"c", report(200)}});
   EXPECT_EQ(c.same_hits, (std::vector<bool>{true, false, true}));

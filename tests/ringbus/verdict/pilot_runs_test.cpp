@@ -58,6 +58,24 @@ TEST(PilotRuns, AreTheSameOnThreads) {
   EXPECT_EQ(last.of, alone.size());
 }
 
+// A frame of a series begins with what the frame before has left in the caches, and so do its pilots.
+TEST(PilotRuns, OfAWarmFrameAreAsWarm) {
+  PilotCase pilot;
+  const accel::Accel& accel = pilot.scene.accel(pilot.machines[0].bvh);
+  RunOptions options = on_threads(1);
+  options.warm = {.start = &pilot.run.cycle->cached_lines};
+  ScatterWorkload workload = pilot.scene.workload();
+  const RunResult second = run_cycle(pilot.machines[0], accel, pilot.scene.size(), workload, options);
+  ASSERT_LT(second.cycle->cycles, pilot.run.cycle->cycles) << "the caches do not matter";
+  const PilotFactory pilots = [&](const Config&, std::uint64_t) { return pilot.scene.new_workload(); };
+  const SearchedRun searched{second, kPilotRays, &pilot.run.cycle->cached_lines};
+  const RunOptions plain = on_threads(1);
+  const SearchObserver nobody;
+  PilotRuns runs(accel, pilot.scene.size(), pilots, searched, plain, nobody);
+  runs.begin("pilot", 1, kPilotRays);
+  EXPECT_EQ(runs.simulate({pilot.wanted.front()}).front().cycle->cycles, second.cycle->cycles);
+}
+
 TEST(PilotRuns, HandOnAnError) {
   PilotCase pilot;
   std::atomic<int> begun{0};
