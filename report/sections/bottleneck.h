@@ -166,7 +166,7 @@ void describe(V& v, const CycleNoise& r) {
   v.field("seeds", r.seeds, "seeds", "other seeds of the picture that were simulated");
   v.field("paths", r.paths, "paths", "paths of each of these simulations");
   v.field("whole_frame", r.whole_frame, "",
-          "true if they were whole frames; else pilots, whose noise is taken to fall with the root of the paths");
+          "true if they were whole frames; else pilots, whose noise is taken for that of the frame, which may be less");
 }
 
 }  // namespace carousel::report

@@ -288,7 +288,7 @@ class Search {
   /// Notes the noise of the cycles by the present pilot's, with the run's seed and with others.
   void note_noise(std::vector<double> others) {
     others.push_back(static_cast<double>(base_.cycle->cycles));
-    out_.noise = cycle_noise(others, static_cast<double>(out_.paths) / static_cast<double>(run_.paths));
+    out_.noise = cycle_noise(others, out_.whole);
     out_.noise_paths = out_.paths;
   }
 

@@ -7,13 +7,13 @@
 
 namespace carousel::ringbus {
 
-std::optional<CycleNoise> cycle_noise(const std::vector<double>& cycles, double part) {
+std::optional<CycleNoise> cycle_noise(const std::vector<double>& cycles, bool whole) {
   if (cycles.size() < 3) return std::nullopt;
   const double n = static_cast<double>(cycles.size()), mean = std::accumulate(cycles.begin(), cycles.end(), 0.0) / n;
   double squares = 0;
   for (const double one : cycles) squares += (one - mean) * (one - mean);
   const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
-  return CycleNoise{t * std::sqrt(2 * squares / (n - 1) * part) / mean, cycles.size() - 1, part >= 1};
+  return CycleNoise{t * std::sqrt(2 * squares / (n - 1)) / mean, cycles.size() - 1, whole};
 }
 
 }  // namespace carousel::ringbus

@@ -14,11 +14,11 @@ struct CycleNoise {
   bool whole = false;     ///< of whole frames, not of pilots
 };
 
-/// The noise from the cycles of equal machines with different seeds, in frames or in pilots of `part` of the frame's
-/// paths. The difference of two draws of a normal distribution has the root of 2 times its deviation, which is
-/// estimated from n draws; so the interval is that of Student's distribution with n - 1 degrees of freedom. A frame is
-/// 1 / part pilots long, and their deviations are taken as independent: the fraction shrinks with the root of `part`.
-/// Absent with fewer than three draws.
-std::optional<CycleNoise> cycle_noise(const std::vector<double>& cycles, double part);
+/// The noise from the cycles of equal machines with different seeds, in whole frames or in pilots. The difference of
+/// two draws of a normal distribution has the root of 2 times its deviation, which is estimated from n draws; so the
+/// interval is that of Student's distribution with n - 1 degrees of freedom. A frame is many pilots long, but its
+/// deviation need not fall with the root of their number: parts that are slow in one seed are so for all of the frame.
+/// So a pilot's is taken as it is, which is too wide rather than too narrow. Absent with fewer than three draws.
+std::optional<CycleNoise> cycle_noise(const std::vector<double>& cycles, bool whole);
 
 }  // namespace carousel::ringbus
