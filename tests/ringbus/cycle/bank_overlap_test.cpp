@@ -18,8 +18,9 @@ TEST(BankOverlap, IsWhatEachCycleSays) {
     const Cycle after = pick(0, 2);
     std::vector<UnitBank> banks;
     for (std::size_t b = 0; b < count; ++b)
-      banks.emplace_back(
-          TesterUnits{.units = pick(1, 3), .interval_cycles = pick(1, 6), .latency_cycles = pick(1, 20)});
+      banks.emplace_back(TesterUnits{.units = static_cast<std::int64_t>(pick(1, 3)),
+                                     .interval_cycles = static_cast<std::int64_t>(pick(1, 6)),
+                                     .latency_cycles = static_cast<std::int64_t>(pick(1, 20))});
     BankOverlap overlap(after);
     std::vector<char> busy(4000), awaited(4000);
     TestingCycles taken;
