@@ -140,7 +140,8 @@ class SecondInterpreter(unittest.TestCase):
                 origin = [programs.single(generator.uniform(500, 520)) for _ in range(3)]
                 rays.append(origin + direction + [0.0, math.inf])
             latency = {kind: generator.randint(1, 9) for kind in CLASSES}
-            config = machine(program.lines, {"p": 1.375}, [400] * 3, [640] * 3,
+            loads = any(re.match(r"load \w+, p$", line) for line in program.lines)
+            config = machine(program.lines, {"p": 1.375} if loads else {}, [400] * 3, [640] * 3,
                              programs={kind + "_cycles": cycles for kind, cycles in latency.items()})
             report, hits = folder.trace(config, rays)
             runs = [programs.run(program.lines, {"p": "1.375"}, ray, latency) for ray in rays]

@@ -90,7 +90,7 @@ export function wrongCharts(charts, report) {
   const sent = (report.bytes ?? []).filter((b) => b.bytes > 0).map((b) => b.bytes).sort((a, b) => b - a);
   if (sent.length) same('bytes', charts['fig-bytes'].series[0], sent);
   if (report.resources?.[0]?.units && report.resources.length > 1)
-    same('cycles of box units', charts['fig-cycles-each'].series[0], report.resources.map((r) => r.units.box.busy / report.engine.cycles));
+    same('cycles of box units', charts['fig-cycles-each'].series[0], report.resources.map((r) => (r.units.unit_fill?.box ?? 1) * r.units.box.busy / report.engine.cycles));
   const rows = report.rays.by_bounce?.length ? report.rays.by_bounce : null;
   if (rows) {
     const sum = (...keys) => rows.reduce((total, row) => keys.reduce((t, key) => t + row[key], total), 0);

@@ -272,7 +272,7 @@ inline std::vector<KeyRow> key_rows() {
       {"primitives.NAME.bounds.high", kOwn, {}, {"[0.6, 0.2, 0.6]"}},
       {"primitives.NAME.offset", kOwn, {}, {"0.3"}},
       {"primitives.NAME.parameters", kOwn, {}, {"{r: 0.3}"}},
-      {"primitives.NAME.program", kOwn, {}, {"['load t, 0.5', 'hit t, dx, dy, dz']"}},
+      {"primitives.NAME.program", kOwn, {}, {"['load t, r', 'hit t, dx, dy, dz']"}},
       {"programs.simple_cycles", kOwn, {}, {"60"}},
       {"programs.product_cycles", kOwn, {}, {"60"}},
       {"programs.divide_cycles", kOwn, {}, {"60"}},

@@ -36,7 +36,7 @@ TEST(ReportSections, EveryKindOfUnitStandsUnderItsName) {
   // The order of the table of unit kinds.
   EXPECT_EQ(keys(with), (std::vector<std::string>{"box", "triangle", "plane", "bundle", "transform", "procedural",
                                                   "any_hit", "micromap", "hit_buffer", "decoder", "reciprocal",
-                                                  "dispatch_busy", "dispatch_idle"}));
+                                                  "unit_fill", "dispatch_busy", "dispatch_idle"}));
 }
 
 TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
