@@ -9,8 +9,8 @@ def colour(ratio):
 
 
 def heat_table(title, row_name, rows, column_name, columns, panels):
-    """`panels` is a list of names, each with the ratio of each row and column."""
-    cell, left, top, gap = 64, 84, 58, 44
+    """`panels` is a list of names, in two lines parted by ": ", each with the ratio of each row and column."""
+    cell, left, top, gap = 64, 84, 74, 44
     width = left + len(panels) * (len(columns) * cell + gap)
     height = top + len(rows) * 40 + 46
     out = [f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' width='{width}' height='{height}' "
@@ -19,7 +19,8 @@ def heat_table(title, row_name, rows, column_name, columns, panels):
            f"<text x='8' y='{top - 8}'>{row_name}</text>"]
     for index, (name, at) in enumerate(panels):
         x0 = left + index * (len(columns) * cell + gap)
-        out.append(f"<text x='{x0}' y='{top - 10}' font-weight='bold'>{name}</text>")
+        out += [f"<text x='{x0}' y='{top - 26 + 16 * line}' font-weight='bold'>{text}</text>"
+                for line, text in enumerate(name.split(": "))]
         for i, row in enumerate(rows):
             y = top + i * 40
             if index == 0:
