@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "ringbus/topology/topology.h"
 #include "tests/ringbus/identity/machine_space.h"
 
 namespace carousel::ringbus {
