@@ -61,7 +61,7 @@ KeyOutcome KeyRuns::run(BaseMachine machine, const std::vector<std::string>& set
   arguments.config = (program_.folder() / "machine.yaml").string();
   arguments.sets = sets;
   arguments.out = (program_.folder() / "out").string();
-  arguments.quiet = arguments.force = true;
+  arguments.quiet = arguments.force = arguments.no_html = true;
   try {
     app::run_command(arguments);
   } catch (const ConfigError& error) {

@@ -27,7 +27,7 @@ class TimedRun : public testing::Test {
     arguments.sets = std::move(sets);
     arguments.out = (program_.folder() / "out").string();
     if (!trace.empty()) arguments.trace.file = (program_.folder() / trace).string();
-    arguments.quiet = arguments.force = true;
+    arguments.quiet = arguments.force = arguments.no_html = true;
     app::run_command(arguments);
     return Json::parse(program_.read("out/report.json"));
   }
