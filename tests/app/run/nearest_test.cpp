@@ -291,6 +291,13 @@ TEST(Nearest, CostsTimeBytesJoulesAndArea) {
   EXPECT_GT(many["energy"]["joules"].get<double>(), one["energy"]["joules"].get<double>());
   EXPECT_GT(part(many, "area", "ray_stores", "size"), 5 * part(one, "area", "ray_stores", "size"));
   EXPECT_LT(part(many, "area", "ray_stores", "size"), 7 * part(one, "area", "ray_stores", "size"));
+  // In a buffer of one hit each offer is one comparison, and a hit that is set aside pays its way back.
+  const Json aside = reported(
+      "collections.ready=1 collections.traversal=ordered rays.query.nearest=16 "
+      "rays.query.buffer=1 rays.query.rounds=resume");
+  const std::uint64_t waiting = aside["nearest"]["waiting_hits"], offered = aside["nearest"]["offered"];
+  EXPECT_GT(waiting, 0u);
+  EXPECT_EQ(aside["tests"]["buffer_steps"]["count"], offered + waiting);
   // The steps of one ray go one after another, so that more units and lanes are of no use to a ray that is alone.
   for (const std::string shape : {"independent", "ring"}) {
     const std::string alone = "topology.resources=1 topology.shape=" + shape +
