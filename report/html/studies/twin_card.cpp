@@ -10,7 +10,7 @@ namespace carousel::report::html {
 
 namespace {
 
-/// A ratio of the twin's to ours, in words: "1.30 times as fast (1.25 to 1.36)".
+/// A ratio of this machine's to the twin's, in words: "1.30 times the energy (1.25 to 1.36)".
 std::string times_text(const Json& ratio, const char* more) {
   std::string out = fmt::format("{:.2f} times {}", number_at(ratio, "ratio"), more);
   if (find(ratio, "low")) out += fmt::format(" ({:.2f} to {:.2f})", number_at(ratio, "low"), number_at(ratio, "high"));
@@ -31,16 +31,18 @@ Html twin_card(const Json& versus) {
   Html out;
   for (const Json& pair : versus["against"]) {
     const bool equal_area = text_at(pair, "than") != "twin";
+    const std::string verdict = text_at(pair, "verdict");
     std::string text = fmt::format("{}, this machine is {}: {}",
                                    equal_area ? "Against a twin of the same area" : "Against its conventional twin",
-                                   text_at(pair, "verdict"), times_text(pair["speed"], "the rays a cycle"));
+                                   verdict == "alike" ? "neither surely faster nor slower" : verdict,
+                                   times_text(pair["speed"], "the rays a cycle"));
     text += fmt::format("; {}, {}.", times_text(pair["bytes"], "the bytes of memory a ray"),
                         times_text(pair["joules"], "the energy"));
     out += markup("<p>{}</p>\n", text);
   }
   for (const Json& machine : versus["machines"])
-    if (text_at(machine, "name") == "twin")
-      out += markup("<p>Its tightest part there: {}.</p>\n", words(text_at(machine, "limits")));
+    if (const std::string limits = text_at(machine, "limits"); text_at(machine, "name") == "twin" && !limits.empty())
+      out += markup("<p>The tightest part of the twin is {}.</p>\n", words(limits));
   return out;
 }
 
