@@ -28,7 +28,7 @@ export function wrongTables(tables, report) {
     check('cycles-by-resource', i, 'places left empty', (1 - fill) * r.units.box.busy / cycles);
     check('cycles-by-resource', i, 'other units work', r.units.box.other_units / cycles);
     check('cycles-by-resource', i, 'waits for its pipelines', r.units.box.latency / cycles);
-    check('cycles-by-resource', i, 'packets pass untested', r.units.box.passing / cycles);
+    check('cycles-by-resource', i, 'no test under way', r.units.box.passing / cycles);
   });
   report.links?.forEach((l, i) => {
     check('links', i, 'from', l.from);
