@@ -52,9 +52,13 @@ class LineReads {
       const std::uint32_t user = free_read();
       reads_[user].line = ahead_;
       reads_[user].ahead = true;
-      ++read_ahead_;
-      early_.insert(ahead_);
-      if (shapes_.take(user, {span_of(ahead_), {}}, now)) arrive(user, now);
+      const std::uint64_t before = not_found();
+      const bool here = shapes_.take(user, {span_of(ahead_), {}}, now);
+      if (not_found() > before) {  // else it is on its way, since somebody has asked for it
+        ++read_ahead_;
+        early_.insert(ahead_);
+      }
+      if (here) arrive(user, now);
     }
   }
 
@@ -69,9 +73,9 @@ class LineReads {
       queue_.pop_front();
       ++read_;
       any = true;
-      const std::uint64_t line = reads_[user].line, misses = shapes_.counts().misses;
+      const std::uint64_t line = reads_[user].line, before = not_found();
       const bool here = shapes_.take(user, {span_of(line, reads_[user].row), {}}, now);
-      if (!early_.empty() && early_.erase(line) > 0) used_ahead_ += shapes_.counts().misses == misses;
+      if (!early_.empty() && early_.erase(line) > 0) used_ahead_ += not_found() == before;
       if (here) arrive(user, now);
     }
     return any;
@@ -104,6 +108,8 @@ class LineReads {
   ShapeSpan span_of(std::uint64_t line, std::uint16_t row = accel::StructureDepths::kNoRow) const {
     return {line * line_bytes_, static_cast<std::uint32_t>(line_bytes_), 0, row};
   }
+  /// Lines that have been asked for and were neither there nor on their way.
+  std::uint64_t not_found() const { return shapes_.counts().misses + shapes_.counts().room_waits; }
   void begin_cycle(Cycle now) {
     if (now == at_) return;
     at_ = now;
