@@ -26,9 +26,9 @@ double tests(const nlohmann::ordered_json& r, const char* kind) {
 double pj(const nlohmann::ordered_json& r, const char* part) {
   return r["energy"]["parts"][part]["joules"].get<double>() * 1e12;
 }
-std::uint64_t busy(const nlohmann::ordered_json& r) {
+std::uint64_t busy(const nlohmann::ordered_json& r, const char* kind = "bundle") {
   std::uint64_t cycles = 0;
-  for (const auto& resource : r["resources"]) cycles += resource["units"]["bundle"]["busy"].get<std::uint64_t>();
+  for (const auto& resource : r["resources"]) cycles += resource["units"][kind]["busy"].get<std::uint64_t>();
   return cycles;
 }
 double units_mm2(const nlohmann::ordered_json& r) {
@@ -51,8 +51,14 @@ TEST_F(BundlePrices, AreThoseOfTheOperationsOfTheirForm) {
                     8.3 * tests(*r, "edges"),
                 1);
   }
-  for (const Json* r : {&interval, &serial, &parallel})
+  for (const Json* r : {&interval, &serial, &parallel}) {
     EXPECT_NEAR(pj(*r, "reciprocals"), 18.4 * tests(*r, "reciprocals"), 1);
+    // What has joules takes a cycle of a unit too.
+    EXPECT_EQ(static_cast<double>(busy(*r, "reciprocal")), tests(*r, "reciprocals"));
+  }
+  // A test by intervals is a pass, and so is one by a silhouette whose edges are tested at once.
+  EXPECT_EQ(static_cast<double>(busy(interval)), tests(interval, "bundle"));
+  EXPECT_EQ(static_cast<double>(busy(parallel)), tests(parallel, "bundle"));
   EXPECT_LT(tests(serial, "edges"), tests(parallel, "edges"));
   // The cycles of two schedules differ by chance; those of the units do not.
   EXPECT_LT(busy(parallel), busy(serial));
