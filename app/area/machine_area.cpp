@@ -24,12 +24,24 @@ using report::AreaPart;
 constexpr double kRecordBytes = 64, kIdBytes = 4, kStackBytes = 64, kHeaderBytes = 16, kKiB = 1024, kEntryBytes = 12,
                  kNodeBytes = 128, kWaitingBytes = 256, kVoteBytes = 8;
 
+/// The area of a unit. A bundle unit may be a pair of blocks. A box unit that tests bundles as well is as large as a
+/// unit that tests their silhouettes, or larger.
+double unit_mm2(const Config& c, const TestersConfig& testers, UnitKind kind) {
+  using Blocks = TestersConfig::BundleBlocks;
+  const double own = cost(c, area_of(kind));
+  if (kind == UnitKind::kBundle && testers.bundle_blocks == Blocks::kPairs) return 2 * own;
+  if (kind == UnitKind::kBox && testers.bundle_blocks == Blocks::kShared && c.bundles.size > 0 &&
+      c.bundles.form == BundlesConfig::Form::kSilhouette)
+    return std::max(own, static_cast<double>(silhouette_unit_mm2(c)));
+  return own;
+}
+
 void add_units(report::AreaOf& out, const Config& c, const SceneFacts& scene, const TestersConfig& testers) {
   for (const auto [kind, units] : testers.units) {
     if (!has_units(c, scene, kind)) continue;
     const auto lanes = static_cast<double>(units.units * testers.simd.lanes * own_testers(c));
     out.size += lanes;
-    out.mm2 += lanes * cost(c, area_of(kind));
+    out.mm2 += lanes * unit_mm2(c, testers, kind);
   }
 }
 
@@ -71,14 +83,22 @@ bool scale_shared_parts(Config& c, const Config& from) {
   return c.shading.workers.value_or(1) <= 256 && c.memory.l2_banks <= 64 && c.memory.l2_kib <= 1 << 20;
 }
 
+/// Rays of a resource with warps that have a next step: those in warps, and those that wait to be packed anew.
+std::int64_t stepping_rays(const OwnSections& own) {
+  const SimtConfig& simt = own.testers.simt;
+  const std::int64_t slots = own.rays.slots_per_resource;
+  return simt.compaction == SimtConfig::Compaction::kRepack ? slots : std::min(simt.warp * simt.warps, slots);
+}
+
 /// The stacks of a resource that traces its own rays; with warps also the data of the node that each lane tests, and
-/// the table of a prefetcher, with a treelet and its votes for each lane.
+/// the table of a prefetcher, with a treelet and its votes for each ray that has a next step.
 double stack_kib(const Config& c, std::int64_t resource) {
   const OwnSections own = own_sections(c, resource);
   const SimtConfig& simt = own.testers.simt;
   if (simt.warp == 0) return static_cast<double>(own.rays.slots_per_resource) * kStackBytes / kKiB;
-  const double lane = kNodeBytes + (simt.prefetch == SimtConfig::Prefetch::kTreelet ? kVoteBytes : 0);
-  return register_kib(c, resource) + static_cast<double>(simt.warp * simt.warps) * lane / kKiB;
+  const double votes =
+      simt.prefetch == SimtConfig::Prefetch::kTreelet ? static_cast<double>(stepping_rays(own)) * kVoteBytes : 0;
+  return register_kib(c, resource) + (static_cast<double>(simt.warp * simt.warps) * kNodeBytes + votes) / kKiB;
 }
 
 /// Bytes beside a record for its buffer of hits, and for what waits for a later round.
@@ -93,11 +113,7 @@ double hit_buffer_bytes(const Config& c) {
 /// Rays that are packed anew keep their stacks while they wait for a warp.
 double register_kib(const Config& c, std::int64_t resource) {
   const OwnSections own = own_sections(c, resource);
-  const SimtConfig& simt = own.testers.simt;
-  const std::int64_t slots = own.rays.slots_per_resource;
-  const std::int64_t stacks =
-      simt.compaction == SimtConfig::Compaction::kRepack ? slots : std::min(simt.warp * simt.warps, slots);
-  return static_cast<double>(stacks * simt.stack_entries) * kEntryBytes / kKiB;
+  return static_cast<double>(stepping_rays(own) * own.testers.simt.stack_entries) * kEntryBytes / kKiB;
 }
 
 double builder_kib(const Config& c) {

@@ -27,6 +27,15 @@ inline float own_or_profile(const Config& config, Cost cost) {
 
 }  // namespace cost_detail
 
+/// The area of a unit that tests bundles by silhouettes (mm2), from the configuration's or the profile's numbers of its
+/// parts.
+inline float silhouette_unit_mm2(const Config& config) {
+  constexpr float kEdgesAtOnce = 6;  // a box seen at a corner has six
+  const float edges = config.bundles.edges == BundlesConfig::Edges::kParallel ? kEdgesAtOnce : 1;
+  return cost_detail::own_or_profile(config, Cost::kSilhouetteUnit) +
+         edges * cost_detail::own_or_profile(config, Cost::kEdgeUnit);
+}
+
 /// The number of a row for this machine: the configuration's own, or the profile's. Without a profile the number is
 /// zero. Where spheres stand in place of boxes or planes, the numbers are those of primitives that are spheres; a ray
 /// that meets an oriented box is first brought into its frame, as into an instance's.
@@ -44,13 +53,9 @@ inline CostValue cost_value(const Config& config, Cost cost) {
     return {value_of(UnitKind::kProcedural), Basis::kAssumed, "a sphere, as a procedural primitive"};
   if (box && config.bvh.elements == Elements::kOrientedBoxes)
     return {value.value + value_of(UnitKind::kTransform), Basis::kAssumed, "a box and a transform: boxes are oriented"};
-  if (cost == row(UnitKind::kBundle) && !energy && config.bundles.form == BundlesConfig::Form::kSilhouette) {
-    constexpr float kEdgesAtOnce = 6;  // a box seen at a corner has six
-    const float edges = config.bundles.edges == BundlesConfig::Edges::kParallel ? kEdgesAtOnce : 1;
-    const auto of = [&](Cost part) { return cost_detail::own_or_profile(config, part); };
-    return {of(Cost::kSilhouetteUnit) + edges * of(Cost::kEdgeUnit), Basis::kAssumed,
+  if (cost == row(UnitKind::kBundle) && !energy && config.bundles.form == BundlesConfig::Form::kSilhouette)
+    return {silhouette_unit_mm2(config), Basis::kAssumed,
             "area.silhouette and area.edge: bundles are tested by silhouettes"};
-  }
   return value;
 }
 

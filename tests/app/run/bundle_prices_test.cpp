@@ -70,6 +70,22 @@ TEST_F(BundlePrices, AreThoseOfTheOperationsOfTheirForm) {
   EXPECT_NEAR(pj(dearer, "bundle_tests") - pj(serial, "bundle_tests"), 100 * tests(serial, "edges"), 1);
 }
 
+// A pair of blocks makes both tests of a box at once, and so is two units. A box unit that tests bundles as well has
+// six edges at once only if it is as large as their unit.
+TEST_F(BundlePrices, BlocksThatDoMoreAreLarger) {
+  const Sets parallel{"bundles.order=parallel", "bundles.form=silhouette", "bundles.edges=parallel"},
+      serial{"bundles.order=parallel", "bundles.form=silhouette"};
+  const auto with = [&](Sets sets, const char* blocks) {
+    sets.push_back(std::string("testers.bundle_blocks=") + blocks);
+    return units_mm2(report(kMachine, sets));
+  };
+  const double unit = 0.063 + 6 * 0.042, box = 0.126, separate = with(parallel, "separate");
+  EXPECT_NEAR(with(parallel, "pairs") - separate, 2 * unit, 1e-5);
+  // Four box units a resource, each as large as the unit that is left out.
+  EXPECT_NEAR(with(parallel, "shared") - separate, 2 * (4 * (unit - box) - unit), 1e-5);
+  EXPECT_NEAR(with(serial, "separate") - with(serial, "shared"), 2 * (0.063 + 0.042), 1e-5);
+}
+
 // A slow divider holds intervals up, and silhouettes, which divide less and behind their tests, by less.
 TEST_F(BundlePrices, DivisionsTakeTime) {
   const auto more = [&](Sets sets) {

@@ -99,6 +99,11 @@ TEST_F(Warps, PrefetchTreeletsForJoulesBytesAndArea) {
   EXPECT_NEAR(pj(few) - pj(none), 11.8 * static_cast<double>(sum(few, "votes")), 1);
   const auto mm2 = [](const Json& r) { return r["area"]["parts"]["stacks"]["mm2"].get<double>(); };
   EXPECT_NEAR(mm2(few) - mm2(none), 2 * 16 * 8 * 8 / 1024.0 * 0.00456, 1e-7);
+  // Rays that wait to be packed vote too, so that the table has an entry for each slot.
+  Sets packed{"testers.simt.compaction=repack", "rays.slots_per_resource=512", "bvh.treelets.bytes=1024"};
+  const Json without = report(kMachine, packed);
+  packed.emplace_back("testers.simt.prefetch=treelet");
+  EXPECT_NEAR(mm2(report(kMachine, packed)) - mm2(without), 2 * 512 * 8 / 1024.0 * 0.00456, 1e-7);
   EXPECT_THROW(report(kMachine, {"testers.simt.prefetch=treelet"}), ConfigError);
 }
 
