@@ -44,6 +44,18 @@ TEST(TreeletPrefetcher, WaitsForEnoughRaysAndForItsVote) {
   EXPECT_EQ(p.of.counts().prefetches, 1u);
 }
 
+TEST(TreeletPrefetcher, TakesNoTreeletThatRaysLeftMeanwhile) {
+  Prefetcher p(2);
+  p.vote(0, 1, 100);
+  p.vote(1, 1, 100);
+  p.vote(1, 2, 105);  // one ray is left, and another treelet has one
+  EXPECT_EQ(p.of.choose(110), nullptr);
+  p.vote(0, 2, 120);
+  EXPECT_EQ(p.of.next(), 130u);
+  EXPECT_EQ(p.of.choose(130), &p.pieces.pieces[2]);
+  EXPECT_EQ(p.of.counts().votes, 4u);
+}
+
 TEST(TreeletPrefetcher, TakesTheTreeletOfTheMostRaysOnce) {
   Prefetcher p(1);
   for (const std::uint32_t slot : {0, 1}) p.vote(slot, 0, 0);
