@@ -9,6 +9,8 @@
 
 #include <boost/math/distributions/students_t.hpp>
 
+#include "core/numeric/noise_between.h"
+
 namespace carousel::app {
 
 namespace {
@@ -60,9 +62,7 @@ std::vector<bool> ties_with_best(const SweepRows& rows, const Goal& goal) {
       std::find(std::begin(kOfCycles), std::end(kOfCycles), rows.columns[goal.column].name) != std::end(kOfCycles);
   const auto noise_with = [&](const SweepRow& row) -> std::optional<double> {
     if (of_repeats || !of_cycles) return of_repeats;
-    const auto a = rows.number(*best, told), b = rows.number(row, told);
-    if (!a || !b) return a ? a : b;
-    return std::sqrt((*a * *a + *b * *b) / 2);
+    return noise_between(rows.number(*best, told), rows.number(row, told));
   };
   for (std::size_t i = 0; i < out.size(); ++i) {
     const auto value = rows.number(rows.rows[i], goal.column);

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "core/numeric/noise_between.h"
+
 namespace carousel::report {
 
 namespace {
@@ -78,14 +80,12 @@ ComparedSection numbers(const char* name, const NumberRow (&rows)[N], const std:
   return out;
 }
 
-/// As Comparison::within_noise. Each noise is that between two runs of one machine, and so the root of 2 times the
-/// deviation of one: the noise between two machines has the mean of both squares.
+/// As Comparison::within_noise.
 std::optional<double> noise_that_holds(const Json& first, const Json& run) {
   const auto a = number_at(first, "/engine/cycles"), b = number_at(run, "/engine/cycles");
-  const auto of_a = number_at(first, "/cycle_noise/fraction"), of_b = number_at(run, "/cycle_noise/fraction");
-  if (!a || !b || *a == 0 || !(of_a || of_b)) return std::nullopt;
-  const double noise = std::sqrt((std::pow(of_a ? *of_a : *of_b, 2) + std::pow(of_b ? *of_b : *of_a, 2)) / 2);
-  return std::abs(*b / *a - 1) <= noise ? std::optional(noise) : std::nullopt;
+  const auto noise = noise_between(number_at(first, "/cycle_noise/fraction"), number_at(run, "/cycle_noise/fraction"));
+  if (!a || !b || *a == 0 || !noise) return std::nullopt;
+  return std::abs(*b / *a - 1) <= *noise ? noise : std::nullopt;
 }
 
 /// A section whose rows follow from the report: each run gives its own, and the section has all of them.

@@ -65,6 +65,9 @@ nlohmann::ordered_json comparison_json(const Comparison& comparison, bool all);
 /// The name of a run in tables: A to Z, and from there on its number.
 std::string letter(std::size_t run);
 
+/// The words about a run whose cycles are within the noise of the first run's, without a full stop.
+std::string noise_words(const Comparison& comparison, std::size_t run);
+
 /// For a terminal: first whether the answers are the same, then numbers side by side, then the configuration; with
 /// `all` every value that differs.
 std::string comparison_table(const Comparison& comparison, bool all);

@@ -44,11 +44,7 @@ std::string ratio_text(const ComparedRow& row, std::size_t run) {
 std::string noise_text(const Comparison& c) {
   std::string out;
   for (std::size_t r = 1; r < c.within_noise.size(); ++r)
-    if (const auto& noise = c.within_noise[r])
-      out += fmt::format(
-          "noise          {} is not told from A by its cycles: another seed of the picture changes them by "
-          "up to {} (~)\n",
-          letter(r), percent(*noise));
+    if (c.within_noise[r]) out += fmt::format("noise          {}\n", noise_words(c, r));
   return out;
 }
 
@@ -100,6 +96,11 @@ std::string keys_text(std::size_t shown, std::size_t hidden) {
 
 std::string letter(std::size_t run) {
   return run < 26 ? std::string(1, static_cast<char>('A' + run)) : fmt::format("#{}", run + 1);
+}
+
+std::string noise_words(const Comparison& c, std::size_t run) {
+  return fmt::format("{} is not told from A by its cycles: another seed of the picture changes them by up to {} (~)",
+                     letter(run), percent(*c.within_noise[run]));
 }
 
 std::string comparison_table(const Comparison& c, bool all) {

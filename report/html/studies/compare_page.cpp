@@ -6,7 +6,6 @@
 
 #include "report/html/html.h"
 #include "report/html/page.h"
-#include "report/text/number_text.h"
 
 namespace carousel::report::html {
 
@@ -33,10 +32,7 @@ Html at_a_glance(const Comparison& c) {
     out += markup("<p>The configuration is the same{}.</p>\n",
                   c.deterministic ? "" : "; counts and times depend on the timing of threads");
   for (std::size_t r = 1; r < c.runs.size(); ++r)
-    if (c.within_noise[r])
-      out += markup(
-          "<p>{} is not told from A by its cycles: another seed of the picture changes them by up to {} (~).</p>\n",
-          letter(r), percent(*c.within_noise[r]));
+    if (c.within_noise[r]) out += markup("<p>{}.</p>\n", noise_words(c, r));
   Table table{"runs", "The runs", {{"letter"}, {"run"}}};
   table.open = true;
   for (const ComparedText& text : c.texts) table.columns.push_back({text.name});
