@@ -169,6 +169,8 @@ constexpr Row kRows[] = {
     {"energy.edge", kSilhouettes},
     {"area.silhouette", kSilhouettes},
     {"area.edge", kSilhouettes},
+    {"area.silhouette", kBundleAreaByForm},
+    {"area.edge", kBundleAreaByForm},
     {"energy.prefetch_vote", kPrefetchesTreelets},
     {"testers.simd", kCycle},
     {"testers.simd.map", kVectors},

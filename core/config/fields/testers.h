@@ -35,7 +35,7 @@ struct SimtConfig {
   std::int64_t repack_rays_per_cycle = 8;
   enum class IdleLanes { kWait, kHelp } idle_lanes = IdleLanes::kWait;
   enum class Prefetch { kNone, kTreelet } prefetch = Prefetch::kNone;
-  std::int64_t prefetch_rays = 2;
+  std::int64_t prefetch_rays = 16;
   std::int64_t vote_cycles = 16;
 
   friend bool operator==(const SimtConfig&, const SimtConfig&) = default;

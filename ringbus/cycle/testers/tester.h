@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "accel/box/bundle_intersect.h"
 #include "core/config/fields/cull_planes.h"
 #include "core/config/fields/testers.h"
 #include "core/config/fields/topology.h"
@@ -251,7 +252,11 @@ class Tester {
     passes_[kind] += first + passes.second;
     passes_[UnitKind::kReciprocal] += std::uint64_t{passes.divided_before} + passes.divided_after;
     UnitBank& divider = banks_[UnitKind::kReciprocal];
-    const UnitBank::Reservation divided = tested(divider, read, passes.divided_before);
+    UnitBank::Reservation divided = tested(divider, read, passes.divided_before);
+    if (passes.divided_before > 0) {  // a bundle's first test needs all of its directions
+      const auto others = static_cast<Cycle>(ceil_div(Cycle{accel::kDirectionDivisions}, divider.units()) - 1);
+      divided.first = std::min(divided.last, divided.first + others * divider.interval());
+    }
     return tested(divider, tested(banks_[kind], tested(banks_[kind], divided, first), passes.second),
                   passes.divided_after);
   }

@@ -81,7 +81,7 @@ TEST_F(Warps, ChangeNoHitAndCostTime) {
 TEST_F(Warps, PrefetchTreeletsForJoulesBytesAndArea) {
   const Sets cut{"bvh.treelets.bytes=1024"};
   Sets ahead = cut;
-  ahead.emplace_back("testers.simt.prefetch=treelet");
+  ahead.insert(ahead.end(), {"testers.simt.prefetch=treelet", "testers.simt.prefetch_rays=2"});
   const Json none = report(kMachine, cut), all = report(kMachine, ahead);
   ahead.emplace_back("testers.simt.prefetch_rays=1000");
   const Json few = report(kMachine, ahead);
@@ -102,7 +102,7 @@ TEST_F(Warps, PrefetchTreeletsForJoulesBytesAndArea) {
   // Rays that wait to be packed vote too, so that the table has an entry for each slot.
   Sets packed{"testers.simt.compaction=repack", "rays.slots_per_resource=512", "bvh.treelets.bytes=1024"};
   const Json without = report(kMachine, packed);
-  packed.emplace_back("testers.simt.prefetch=treelet");
+  packed.insert(packed.end(), {"testers.simt.prefetch=treelet", "testers.simt.prefetch_rays=2"});
   EXPECT_NEAR(mm2(report(kMachine, packed)) - mm2(without), 2 * 512 * 8 / 1024.0 * 0.00456, 1e-7);
   EXPECT_THROW(report(kMachine, {"testers.simt.prefetch=treelet"}), ConfigError);
 }

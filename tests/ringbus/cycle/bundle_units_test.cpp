@@ -36,14 +36,16 @@ TEST(BundleUnits, EdgesOfASilhouetteArePasses) {
   EXPECT_EQ(tester.strip(0, counts(0, 8), 1, {.first = 40}), 39u + 3u);
 }
 
-// By intervals the first test waits for the first division, and the last for the last: six, one in two cycles.
+// By intervals a bundle's tests wait for all of its six divisions, one in two cycles.
 TEST(BundleUnits, IntervalsWaitForDivisions) {
   Tester tester(bundle_testers());
-  EXPECT_EQ(tester.strip(0, counts(0, 2), 1, {.first = 2, .divided_before = 6}), 5u * 2u + 6u + 3u);
+  EXPECT_EQ(tester.strip(0, counts(0, 2), 1, {.first = 2, .divided_before = 6}), 5u * 2u + 6u + 1u + 3u);
   EXPECT_EQ(tester.bank(UnitKind::kReciprocal).busy(), 12u);
   EXPECT_EQ(tester.bank(UnitKind::kBundle).busy(), 2u);
-  // Many tests outlast the divisions, and begin with the first.
-  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 20), 1, {.first = 20, .divided_before = 6}), 6u + 19u + 3u);
+  // The tests of a second bundle wait for its divisions: they begin with those of the first, which have all directions.
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 20), 1, {.first = 20, .divided_before = 6}),
+            5u * 2u + 6u + 19u + 3u);
+  EXPECT_EQ(Tester(bundle_testers()).strip(0, counts(0, 4), 2, {.first = 4, .divided_before = 12}), 11u * 2u + 6u + 3u);
 }
 
 // By silhouettes only the distance of a box that is entered is divided, behind its test.
