@@ -55,5 +55,19 @@ TEST_F(WindowTest, TakesDispatchACycleToChoose) {
   EXPECT_EQ(spared(3000, {"topology.visit=all"}), 3000 + 3 - 13 - 2 * (50 + 2 + 1) - 1);
 }
 
+// On a bus an answer may be taken out of turn, while other resources still test its packet. Each cycle of a ray has one
+// stage all the same, or the engine would refuse its own result.
+TEST_F(WindowTest, TakesAnswersOutOfTurnOnABus) {
+  const auto bus = [&](int window) {
+    return report(
+        "scene: {builtin: terrain, triangles: 2000}\nimage: {width: 16, height: 12}\n"
+        "rays: {slots_per_resource: 64}\npackets: {rays: 8}\ntopology: {shape: bus, resources: 4}\n",
+        {fmt::format("testers={{window: {}, contexts: 2}}", window)});
+  };
+  const Json in_turn = bus(1), out_of_turn = bus(4);
+  EXPECT_EQ(out_of_turn["digest"], in_turn["digest"]);
+  EXPECT_NE(out_of_turn["engine"]["cycles"], in_turn["engine"]["cycles"]);
+}
+
 }  // namespace
 }  // namespace carousel::window_test

@@ -253,7 +253,8 @@ bool Dispatcher::choose_to_handle(std::size_t d, Cycle now) {
   }
   ++passed_over_[d];
   in.bring_forward(chosen);
-  parts_.dispatch.hold(now, 1, 0, SliceKind::kPass, in.front().packet, !in.front().passes);
+  const SliceKind kind = in.front().answers ? SliceKind::kRetire : SliceKind::kPass;  // others may still be testing it
+  parts_.dispatch.hold(now, 1, 0, kind, in.front().packet, !in.front().passes);
   return true;
 }
 
@@ -263,10 +264,14 @@ std::size_t Dispatcher::ask_rule(std::size_t d, std::size_t end) {
   bool any = false;
   for (std::size_t i = 0; i < end; ++i) {
     const Token& token = in_[d].peek(i);
-    const Packet& packet = parts_.machine.packet(token.packet);
     const std::optional<Decision> decision = decide(d, token);
     WaitingPacket& one = waiting_.emplace_back();
-    one.rays = static_cast<std::uint32_t>(packet.members.size());
+    one.rays = token.rays;
+    if (decision && decision->action == Action::kHear) {  // its owner, on another thread, may be issuing it anew
+      one.may_go = one.has_shapes = any = true;
+      continue;
+    }
+    const Packet& packet = parts_.machine.packet(token.packet);
     one.depth = packet.depth;
     one.own = packet.owner == id();
     if (!decision) continue;
