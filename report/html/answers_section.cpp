@@ -8,6 +8,7 @@
 #include "report/html/packed_series.h"
 #include "report/html/run_sections.h"
 #include "report/html/still.h"
+#include "report/run/report_json.h"
 #include "report/text/number_text.h"
 #include "report/text/singular.h"
 
@@ -71,7 +72,8 @@ Html why_card(const Json& report) {
   const double cycles = number_at(report, "engine.cycles");
   const Json* resources = find(report, "resources");
   if (cycles > 0 && resources && !resources->empty() && resources->front().contains("units")) {
-    const double all = cycles * static_cast<double>(resources->size());
+    const std::size_t testing = resources_with_units(report.value("config", Json::object()), resources->size());
+    const double all = cycles * static_cast<double>(testing);
     struct Wait {
       const char *key, *text;
       double amount;
@@ -82,8 +84,8 @@ Html why_card(const Json& report) {
                     {"storage", "a free block", 0},
                     {"idle", "rays", 0}};
     double busy = 0;
-    for (const Json& r : *resources) {
-      const Json* unit = find(r, "units.box");
+    for (std::size_t i = 0; i < testing; ++i) {
+      const Json* unit = find((*resources)[i], "units.box");
       if (!unit) continue;
       busy += number_at(*unit, "busy") / all;
       for (Wait& wait : waits) wait.amount += number_at(*unit, wait.key) / all;

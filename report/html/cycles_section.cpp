@@ -10,6 +10,7 @@
 
 #include "report/html/html.h"
 #include "report/html/run_sections.h"
+#include "report/run/report_json.h"
 
 namespace carousel::report::html {
 
@@ -71,14 +72,15 @@ Shares busy_and_idle(double busy, double waits = 0) {
   return out;
 }
 
-/// The sums over all resources, a row a kind of unit that did anything.
-void add_units(Table& table, const Json& resources, double cycles) {
+/// The sums over the resources, a row a kind of unit that did anything. `testing`: how many have units.
+void add_units(Table& table, const Json& resources, std::size_t testing, double cycles) {
   std::vector<std::pair<std::string, Shares>> kinds;
   double dispatch = 0;
-  for (const Json& resource : resources) {
+  for (std::size_t i = 0; i < resources.size(); ++i) {
+    const Json& resource = resources[i];
     for (const auto& [kind, unit] : resource["units"].items()) {
-      if (!unit.is_object() || !unit.contains("busy")) continue;
-      const Shares one = shares_of(resource["units"], kind, cycles * static_cast<double>(resources.size()));
+      if (i >= testing || !unit.is_object() || !unit.contains("busy")) continue;
+      const Shares one = shares_of(resource["units"], kind, cycles * static_cast<double>(testing));
       auto found = std::find_if(kinds.begin(), kinds.end(), [&k = kind](const auto& row) { return row.first == k; });
       if (found == kinds.end()) found = kinds.insert(kinds.end(), {kind, Shares{}});
       for (std::size_t u = 0; u < kUseCount; ++u) found->second[u] += one[u];
@@ -95,7 +97,9 @@ Table parts_table(const Json& report) {
   const Json* resources = find(report, "resources");
   Table parts = table_of_uses("cycles-by-part", "Use of the cycles by kind of part", "part");
   if (cycles <= 0) return parts;
-  if (resources && !resources->empty() && resources->front().contains("units")) add_units(parts, *resources, cycles);
+  if (resources && !resources->empty() && resources->front().contains("units"))
+    add_units(parts, *resources, resources_with_units(report.value("config", Json::object()), resources->size()),
+              cycles);
   if (const Json* links = find(report, "links"); links && !links->empty() && links->front().contains("cycles")) {
     double busy = 0, stalled = 0;
     for (const Json& link : *links) {
@@ -130,8 +134,9 @@ Html cycles_section(const Json& report) {
   const Table parts = parts_table(report);
   Table each = table_of_uses("cycles-by-resource", "Use of the cycles of the box units, by resource", "resource");
   if (resources && !resources->empty() && resources->front().contains("units"))
-    for (const Json& r : *resources)
-      if (find(r, "units.box"))
+    for (std::size_t i = 0, n = resources_with_units(report.value("config", Json::object()), resources->size()); i < n;
+         ++i)
+      if (const Json& r = (*resources)[i]; find(r, "units.box"))
         add(each, fmt::format("resource {}", value_text(r["resource"])), shares_of(r["units"], "box", cycles));
   if (parts.rows.empty()) return {};
   Html out = markup(

@@ -164,6 +164,19 @@ void write_text(std::string& out, const Json& json, std::size_t indent) {
 
 }  // namespace
 
+std::size_t resources_with_units(const Json& config, std::size_t resources) {
+  const auto topology = config.find("topology");
+  if (topology == config.end() || topology->value("shape", "") != "graph" || !topology->contains("nodes"))
+    return resources;
+  std::size_t without = 0;
+  for (const Json& node : (*topology)["nodes"]) {
+    if (node.value("kind", "") != "packet_process" || node.value("serves", "").empty()) continue;
+    const auto count = node.find("count");
+    without += count != node.end() && count->is_number() ? count->get<std::size_t>() : 1;
+  }
+  return resources - std::min(resources, without);
+}
+
 std::string json_text(const Json& json) {
   std::string out;
   write_text(out, json, 0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -15,6 +16,9 @@ namespace carousel::report {
 nlohmann::ordered_json report_json(const Report& report);
 /// Its text, indented by two. A list of numbers stands on one line, as a row of a time series has many.
 std::string json_text(const nlohmann::ordered_json& json);
+/// Of `resources` resources those that have units, by the report's `config`: the first ones, as packet processes that
+/// serve others are the last.
+std::size_t resources_with_units(const nlohmann::ordered_json& config, std::size_t resources);
 
 /// stress.json of `carousel stress`.
 nlohmann::ordered_json stress_json(const Stress& stress);

@@ -7,6 +7,7 @@
 
 #include "report/rays/ray_time_table.h"
 #include "report/run/part_table.h"
+#include "report/run/report_json.h"
 #include "report/run/sampled_table.h"
 #include "report/run/table_lines.h"
 #include "report/run/verdict_table.h"
@@ -206,17 +207,19 @@ void cycle_lines(Table& table, const Report& report) {
   if (!report.resources || report.resources->empty()) return;
   PerUnit<UnitCycles> sums;
   std::uint64_t dispatch = 0;
-  for (const Resource& r : *report.resources) {
+  const std::size_t testing = resources_with_units(report.config, report.resources->size());
+  for (std::size_t i = 0; i < report.resources->size(); ++i) {
+    const Resource& r = (*report.resources)[i];
     if (!r.units) return;
-    for (const auto [kind, sum] : sums) sum += r.units->kinds[kind];
+    for (const auto [kind, sum] : sums)
+      if (i < testing) sum += r.units->kinds[kind];
     dispatch += r.units->dispatch_busy;
   }
-  const std::uint64_t all = cycles * report.resources->size();
-  const auto part = [&](std::uint64_t x) { return percent(ratio(x, all)); };
+  const auto part = [&](std::uint64_t x) { return percent(ratio(x, cycles * testing)); };
   Items busy;
   for (const UnitKindRow& row : kUnitKinds)
     if (report.resources->front().units->features.show(row.shown)) busy.add(row.name, part(sums[row.kind].busy));
-  busy.add("dispatch", part(dispatch));
+  busy.add("dispatch", percent(ratio(dispatch, cycles * report.resources->size())));
   busy.add("shading", percent(report.shading.utilisation.value_or(0)));
   busy.add("DRAM", percent(report.memory ? report.memory->dram_utilisation : 0));
   busy.lines(table, "busy");

@@ -284,9 +284,11 @@ class CycleRun {
       dispatch += own.dispatch;
     }
     const double tiles = static_cast<double>(machine_.resources().size());
+    // Packet processes that serve resources have no units, rays and caches.
+    const double testing = tiles - static_cast<double>(managers_of(config_.topology));
     std::vector<ClassUse> out;
-    for (const auto [kind, busy] : units) out.push_back({unit_row(kind).work, tiles, busy});
-    out.push_back({"ray_reads", config_.rays.banks > 0 ? 2 * tiles : tiles, reads});
+    for (const auto [kind, busy] : units) out.push_back({unit_row(kind).work, testing, busy});
+    out.push_back({"ray_reads", config_.rays.banks > 0 ? 2 * testing : testing, reads});
     out.push_back({"dispatch", tiles, dispatch});
     out.push_back(link_use());
     Cycle port = 0;
@@ -297,7 +299,7 @@ class CycleRun {
     if (!machine_.memory().own_caches().empty()) {
       Cycle own = 0;
       for (const auto& cache : machine_.memory().own_caches()) own += cache->statistics().port_busy;
-      out.push_back({"l1_port", tiles, own});
+      out.push_back({"l1_port", testing, own});
     }
     out.push_back({"memory_bandwidth", static_cast<double>(machine_.memory().memories().size()),
                    machine_.memory().counts().busy});

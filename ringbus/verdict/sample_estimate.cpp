@@ -160,7 +160,8 @@ class Sample {
       most = std::max(most, resource.tests.box + resource.tests.triangle);
       all += resource.tests.box + resource.tests.triangle;
     }
-    const auto parts = static_cast<double>(run_.result.resources.size());
+    const auto parts = static_cast<double>(run_.result.resources.size()) -
+                       static_cast<double>(managers_of(config_.topology));  // which test nothing
     return all > 0 ? parts * static_cast<double>(most) / static_cast<double>(all) - 1 : 0;
   }
 

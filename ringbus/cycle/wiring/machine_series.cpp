@@ -56,6 +56,9 @@ class SeriesWriter {
 
   void machine_rows() {
     const std::size_t resources = machine_.resources().size();
+    std::size_t testing = resources;  // without packet processes that serve resources, which have no units
+    for (std::uint32_t r = 0; const std::uint32_t manager : machine_.shared().topology.manager_of())
+      testing -= manager == r++;
     const auto shading = [&](ShadingCounter counter) { return of_shading(counter_index(counter)); };
     const auto all = [&](std::size_t counter) {
       Sums sums = zeros();
@@ -75,7 +78,7 @@ class SeriesWriter {
     row({"machine", "rays waiting to be shaded", "rays", Kind::kMean}, shading(ShadingCounter::kWaiting));
     row({"machine", "shader workers busy", "workers", Kind::kMean}, shading(ShadingCounter::kWorkers));
     for (const UnitKindRow& unit : kUnitKinds)
-      row({"machine", fmt::format("{} busy", unit.name), "share", Kind::kMean}, all(unit_index(unit.kind)), resources);
+      row({"machine", fmt::format("{} busy", unit.name), "share", Kind::kMean}, all(unit_index(unit.kind)), testing);
     row({"machine", "dispatch busy", "share", Kind::kMean}, all(counter_index(ResourceCounter::kDispatch)), resources);
     Sums busy = zeros(), bytes = zeros();
     for (const LinkSums& link : links_)

@@ -77,5 +77,18 @@ TEST(ReportJson, EveryCountHasAUnit) {
   expect_units(report_schema(), "");
 }
 
+// The rows of packet processes that serve resources are the last; those with cells of their own have units.
+TEST(ReportJson, KnowsWhichResourcesHaveUnits) {
+  const auto config = nlohmann::ordered_json::parse(R"({"topology": {"shape": "graph", "nodes": [
+    {"kind": "resource", "count": 4}, {"kind": "cache", "count": "auto", "serves": "r[*]"},
+    {"kind": "packet_process", "count": 2, "serves": "r[0..1]"},
+    {"kind": "packet_process", "count": "auto", "serves": "r[2..3]"}]}})");
+  EXPECT_EQ(resources_with_units(config, 7), 4u);
+  auto cells = config;
+  for (auto& node : cells["topology"]["nodes"]) node.erase("serves");
+  EXPECT_EQ(resources_with_units(cells, 7), 7u);
+  EXPECT_EQ(resources_with_units({}, 7), 7u);
+}
+
 }  // namespace
 }  // namespace carousel::report

@@ -1,6 +1,8 @@
 // Packet processes that serve resources (US 9633468 with several central units): the hits of every machine, rays and
 // tests at resources, collections at packet processes, and a verdict on deadlock that counts those who issue packets.
+#include <algorithm>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -68,6 +70,19 @@ TEST_F(PacketProcesses, KeepTheCollectionsAndNoRays) {
     EXPECT_EQ(one.local_rays > 0, !manager);
     EXPECT_EQ(out.result.collections[r].memberships_peak > 0, manager);
   }
+}
+
+// Six resources have box units, and eight read packets: the bounds and shares of classes of parts are by these.
+TEST_F(PacketProcesses, CountNoUnits) {
+  const Outcome out = run_text(scene_, kMachine);
+  const auto parts_of = [&](std::string_view name) {
+    const std::vector<cycle::ClassUse>& uses = out.result.cycle->uses;
+    const auto use = std::ranges::find(uses, name, &cycle::ClassUse::name);
+    return use == uses.end() ? 0 : use->parts;
+  };
+  EXPECT_EQ(parts_of("box_tests"), 6);
+  EXPECT_EQ(parts_of("ray_reads"), 6);
+  EXPECT_EQ(parts_of("dispatch"), 8);
 }
 
 // The bound of credits is that of those who issue: two with 4 packets each, where eight would be too many.
