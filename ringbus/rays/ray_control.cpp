@@ -39,7 +39,8 @@ RayControl::RayControl(const RayControlSettings& settings, std::span<const std::
       managers_.push_back(manager);
   }
   std::size_t total = free_slots();
-  if (!managers_.empty()) total /= managers_.size();
+  // What is enough must not be more than the packet process with the fewest slots has, or it would get no rays.
+  for (const ResourceId manager : managers_) total = std::min(total, free_slots(owners_[manager.value]));
   // Groups are placed whole where possible, but waiting for more than a quarter of the slots would idle the ring.
   if (settings.bundles.size > 0) builder_.emplace(settings.bundles, settings.scene_size);
   enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_issuing() : total) / 4);

@@ -72,6 +72,26 @@ TEST(RayControl, BalancedSpreadsEachGroupInEqualRuns) {
   }
 }
 
+// The packet process 9 serves eight resources, and 10 serves one, whose 32 slots are fewer than a quarter of the mean.
+TEST(RayControl, APacketProcessWithFewSlotsGetsRaysToo) {
+  std::vector<std::unique_ptr<RayStore>> stores;
+  for (std::uint32_t r = 0; r < 11; ++r) stores.push_back(std::make_unique<RayStore>(ResourceId(r), r < 9 ? 32 : 0));
+  Config config;
+  config.packets.rays = 64;
+  RayControlSettings settings =
+      ray_control_settings(config.rays, config.collections, config.packets, config.bundles, 1, 1.0f);
+  settings.manager_of = {9, 9, 9, 9, 9, 9, 9, 9, 10, 9, 10};
+  RayControl control(settings, stores);
+  control.submit(rays(5 * 64));
+  std::vector<RayGroup> many, few;
+  control.collect(ResourceId(9), many);
+  control.collect(ResourceId(10), few);
+  EXPECT_EQ(many.size(), 4u);
+  ASSERT_EQ(few.size(), 1u);
+  EXPECT_EQ(few[0].ids.size(), 32u);
+  for (const RayId id : few[0].ids) EXPECT_EQ(stores[0]->layout().owner(id), ResourceId(8));
+}
+
 TEST(RayControl, RoundRobinDealsRaysOneByOne) {
   Bench bench(Placement::kRoundRobin, Home::kIssuer, 3, 64, 6);
   bench.control->submit(rays(6));
