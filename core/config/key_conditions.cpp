@@ -18,9 +18,7 @@ struct Row {
   Condition needed;
 };
 constexpr Row kRows[] = {
-    {"scene.procedural",
-     {[](const C& c, const S&) { return is_generated(c, BuiltinScene::kSpheres); },
-      "the scene is not the generated one of spheres"}},
+    {"scene.procedural", kSpheres},
     {"scene.triangles", kSizedScene},
     {"scene.instances", kInstances},
     {"scene.levels", kInstances},
@@ -198,6 +196,7 @@ constexpr Row kRows[] = {
     {"testers.dispatch", kTravel},
     {"testers.dispatch", kWindow},
     {"testers.own_rays", kTravel},
+    {"testers.own_rays", kOwnersIssue},
     {"testers.any_hit", kCycle},
     {"testers.any_hit", kAnyHit},
     {"testers.bundle_blocks", kCycle},

@@ -127,6 +127,8 @@ inline constexpr Condition kTwoClocks{[](const C& c, const S&) {
 inline constexpr Condition kSeededScene{
     [](const C& c, const S&) { return c.scene.builtin && !is_generated(c, BuiltinScene::kCornell); },
     "the scene is not drawn at random"};
+inline constexpr Condition kSpheres{[](const C& c, const S&) { return is_generated(c, BuiltinScene::kSpheres); },
+                                    "the scene is not the generated one of spheres"};
 inline constexpr Condition kSizedScene{[](const C& c, const S&) {
                                          return is_generated(c, BuiltinScene::kSpheres) ||
                                                 is_generated(c, BuiltinScene::kTerrain) ||
@@ -156,6 +158,8 @@ inline constexpr Condition kTravel{[](const C& c, const S&) { return packets_tra
 inline constexpr Condition kWindow{
     [](const C& c, const S&) { return any_testers(c, [](const TestersConfig& one) { return one.window > 1; }); },
     "testers.window shows a resource one packet at a time"};
+inline constexpr Condition kOwnersIssue{[](const C& c, const S&) { return managers_of(c.topology) == 0; },
+                                        "the packet_process that issues packets has no rays of its own"};
 inline constexpr Condition kManyResources{[](const C& c, const S&) { return c.topology.resources > 1; },
                                           "there is one resource"};
 inline constexpr Condition kMultiRing{

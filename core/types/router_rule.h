@@ -29,7 +29,7 @@ struct RouterQuestion {
   std::size_t shortest = 0;  ///< the place in `links` of the shortest way; their number if no way leads there
 };
 
-/// A router that a plugin brings (`topology.routes`). It is asked once for each node and destination, before the run,
+/// A router that a plugin brings (`topology.routes`). It is asked for each node, destination and lane, before the run,
 /// and its answers are the tables of all nodes: so the verdict on deadlock, `check` and both engines know its ways.
 struct RouterRule {
   /// The place in `links` of the link to take; any other number: no way leads there. Any thread may call, several times

@@ -51,6 +51,29 @@ void check_node(const GraphNode& node, const std::string& key, const RuleBreach&
     breach(key + ".at", "the nodes of a group cannot all stand there; expected step besides");
 }
 
+/// What a resource has of its own must be there: collections at a packet process that serves, all else at resources.
+void check_own_of(const Config& config, const OwnOf& one, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  bool is_process = false;
+  for (std::int64_t r = ray_owners(c); r < c.resources; ++r) is_process |= one.is_about(r);
+  const std::string place = own_place(one);
+  if (is_process && one.testers != nullptr && *one.testers != config.testers)
+    breach(place + ".testers", "a packet_process that serves resources has no testers");
+  for_each_own_key([&](const auto& row) {
+    if (!(one.keys->*row.own)) return;
+    const std::string_view path = row.path;
+    const std::string key = fmt::format("{}.{}", place, row.name);
+    const bool collects = path.starts_with("collections.");
+    if (is_process && !collects && !path.starts_with("packets."))
+      breach(key,
+             fmt::format("a packet_process that serves resources has collections alone; expected no {}", row.name));
+    else if (!is_process && (collects || path == "memory.fetch_ahead"))
+      breach(key, fmt::format("a packet_process collects the rays of these resources, and issues their packets; "
+                              "expected no {}{}",
+                              row.name, collects ? ", or `nodes` that name the packet_process" : ""));
+  });
+}
+
 /// Packet processes that serve resources hold collections alone: they have no rays, testers and shapes, and the
 /// resources have no collections.
 void check_managers(const Config& config, const RuleBreach& breach) {
@@ -94,22 +117,7 @@ void check_managers(const Config& config, const RuleBreach& breach) {
          "a packet_process is no resource that shades; expected false, found true");
   refuse(config.faults.resource.kind != FaultsConfig::Resource::Kind::kNone, "faults.resource.kind",
          "resources that a packet_process serves have no faults yet; expected none");
-  for (std::size_t i = 0; i < c.overrides.size(); ++i) {
-    const ResourceOverride& one = c.overrides[i];
-    for (std::int64_t r = ray_owners(c); r < c.resources; ++r) {
-      if (!one.is_about(r)) continue;
-      const std::string place = fmt::format("topology.overrides.{}", i);
-      refuse(one.testers != config.testers, place + ".testers",
-             "a packet_process that serves resources has no testers");
-      for_each_own_key([&](const auto& row) {
-        const std::string_view path = row.path;
-        if (one.own.*row.own && !path.starts_with("collections.") && !path.starts_with("packets."))
-          breach(fmt::format("{}.{}", place, row.name),
-                 fmt::format("a packet_process that serves resources has collections alone; expected no {}", row.name));
-      });
-      break;
-    }
-  }
+  for_each_own(c, [&](const OwnOf& one) { check_own_of(config, one, breach); });
 }
 
 /// Units of a central machine are all alike, and a distributor knows one.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/config/graph/graph.h"
+#include "core/config/key_conditions.h"
 #include "core/config/own_sections.h"
 #include "tests/core/config/config_issues.h"
 
@@ -106,13 +107,24 @@ TEST(PacketProcessConfig, WhatItDoesNotHaveIsRefused) {
   refused("  overrides: [{nodes: p, slots_per_resource: 4}]\n",
           "topology.overrides.0.slots_per_resource: a packet_process that serves resources has collections alone");
   refused("  overrides: [{nodes: p, testers: {contexts: 3}}]\n", "topology.overrides.0.testers: ");
+  refused("  overrides: [{nodes: 'r[0]', sort_ids_per_cycle: 4}]\n",
+          "topology.overrides.0.sort_ids_per_cycle: a packet_process collects the rays of these resources");
+  refused("  overrides: [{nodes: 'r[0]', fetch_ahead: 4}]\n", "topology.overrides.0.fetch_ahead: ");
   EXPECT_TRUE(refusal(kOne, kStar, "  overrides: [{nodes: p, sort_ids_per_cycle: 4}]\n").empty());
+  EXPECT_TRUE(refusal(kOne, kStar, "  overrides: [{nodes: 'r[*], p', ids_per_cycle: 4, ready: 4}]\n").empty());
   EXPECT_THAT(refusal(kOne + "    - {name: q, kind: packet_process}\n", kStar + "    - {from: q, to: p, both: true}\n"),
               Contains(HasSubstr("topology.nodes: each packet_process serves resources, or each has its own cells")));
   EXPECT_THAT(texts(issues_of("scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology: {shape: graph, nodes: "
                               "[{name: r, count: 2}, {name: p, kind: packet_process, serves: 'r[*]'}], links: [{from: "
                               "'r[*]', to: p, both: true}]}\n")),
               Contains(HasSubstr("expected a node of the kind cache")));
+}
+
+// A packet process has no rays, so there is no order in which an issuer tests its own.
+TEST(PacketProcessConfig, KeysOfIssuersWithRaysAreNotFelt) {
+  const Config config = parse_config(machine(kOne, kStar), "test.yaml");
+  EXPECT_EQ(unused_because(config, {}, "testers.own_rays"),
+            "the packet_process that issues packets has no rays of its own");
 }
 
 }  // namespace
