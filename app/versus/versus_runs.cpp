@@ -116,7 +116,7 @@ class VersusRuns {
   }
 
   void describe_machine(report::VersusMachine& machine, const report::Report& r) const {
-    machine.resources = static_cast<std::uint64_t>(p_.config().topology.resources);
+    machine.resources = static_cast<std::uint64_t>(ray_owners(p_.config().topology));  // as the twin has them
     machine.mm2 = r.area->mm2;
     if (!r.bound->classes.empty()) machine.limits = r.bound->classes.front().name;
     machine.reached = r.bound->reached;
