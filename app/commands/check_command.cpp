@@ -97,9 +97,9 @@ std::string graph_facts_text(const TopologyConfig& config) {
   out += fmt::format("busiest: {}, on {} of {} ways; a uniform load fills it at {:.4f} flits a resource and cycle\n",
                      facts.busiest, facts.busiest_pairs, facts.ways, facts.bound);
   if (facts.resources > 1)
-    out += fmt::format("halves: {} bytes a cycle there and back, {} ({})\n", facts.halves.bytes_per_cycle,
+    out += fmt::format("halves: {} bytes a cycle there and back, {}{}\n", facts.halves.bytes_per_cycle,
                        facts.halves.exact ? "the narrowest of all cuts" : "the narrowest cut that a search found",
-                       facts.halves_links);
+                       facts.halves_links.empty() ? ", as no link crosses it" : " (" + facts.halves_links + ")");
   if (facts.wire_mm)
     out += fmt::format("wires: {:.6g} mm of links, {:.6g} bit mm\n", *facts.wire_mm, facts.wire_bit_mm);
   return out;

@@ -118,6 +118,14 @@ TEST(GraphRun, AnyGraphGivesTheSamePicture) {
   }
 }
 
+TEST(GraphRun, MachinesSideBySideHaveNoLinkBetweenTheirHalves) {
+  const Outcome check = Program().run({"check", CAROUSEL_SOURCE_DIR "/configs/packet_processes.yaml"});
+  ASSERT_EQ(check.status, 0) << check.err;
+  EXPECT_THAT(check.out, testing::HasSubstr("packet processes: unit[0] serves left[0], left[1], left[2], left[3]; "));
+  EXPECT_THAT(check.out, testing::HasSubstr("halves: 0 bytes a cycle there and back, the narrowest of all cuts, as no "
+                                            "link crosses it\n"));
+}
+
 TEST(GraphRun, ASlowLinkIsFelt) {
   const Program program;
   program.write("graph.yaml", kMachine + kClusters);
