@@ -1,4 +1,4 @@
-"""Programs of primitives, a second time (docs/how-it-works/programs.md): an interpreter that walks the text as a tree
+"""Programs of primitives, a second time (docs/reference/instructions.md): an interpreter that walks the text as a tree
 of blocks and computes each instruction in exact arithmetic, rounded once to 32 bits. It shares no line with the
 product."""
 import ctypes

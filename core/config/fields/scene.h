@@ -154,7 +154,7 @@ void describe(V& v, PrimitiveConfig& c) {
   v.field("offset", c.offset, RealRange{0, 1e6}, "model units",
           "The error of a hit along its normal. Rays that leave the surface start so far away from it.");
   v.section("parameters", c.parameters, "Numbers that the program loads.");
-  v.texts("program", c.program, "The instructions, one a line (docs/how-it-works/programs.md).");
+  v.texts("program", c.program, "The instructions, one a line (docs/reference/instructions.md).");
 }
 
 template <class V>

@@ -83,7 +83,7 @@ TEST_F(Warps, PrefetchTreeletsForJoulesBytesAndArea) {
   Sets ahead = cut;
   ahead.insert(ahead.end(), {"testers.simt.prefetch=treelet", "testers.simt.prefetch_rays=2"});
   const Json none = report(kMachine, cut), all = report(kMachine, ahead);
-  ahead.emplace_back("testers.simt.prefetch_rays=1000");
+  ahead.back() = "testers.simt.prefetch_rays=1000";
   const Json few = report(kMachine, ahead);
   EXPECT_EQ(all["digest"], none["digest"]);
   EXPECT_NE(all["engine"]["cycles"], none["engine"]["cycles"]);
