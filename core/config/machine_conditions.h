@@ -238,9 +238,9 @@ inline constexpr Condition kBundles{[](const C& c, const S&) { return has_bundle
 inline constexpr Condition kSilhouettes{
     [](const C& c, const S&) { return has_bundles(c) && c.bundles.form == BundlesConfig::Form::kSilhouette; },
     "bundles are not tested by silhouettes"};
-inline constexpr Condition kBundleAreaByForm{
-    [](const C& c, const S&) { return !c.area.own[cost_index(Cost::kBundleUnit)]; },
-    "area.bundle has the area of a unit in all"};
+inline constexpr Condition kSilhouetteUnits{
+    [](const C& c, const S& s) { return kSilhouettes.holds(c, s) && !c.area.own[cost_index(Cost::kBundleUnit)]; },
+    "bundles are not tested by silhouettes, or area.bundle is given"};
 inline constexpr Condition kBundleUnits{[](const C& c, const S&) {
                                           return has_bundles(c) &&
                                                  c.testers.bundle_blocks != TestersConfig::BundleBlocks::kShared;
