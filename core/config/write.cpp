@@ -133,7 +133,14 @@ class JsonWriter : public RowVisitor<JsonWriter> {
  private:
   void put(std::string_view key, Json value) { out_[std::string(key)] = std::move(value); }
 
-  Json out_ = Json::object();
+  /// Room for the keys of a section from the beginning: an ordered object that grows copies all that it holds.
+  static Json with_room() {
+    Json out = Json::object();
+    out.get_ref<Json::object_t&>().reserve(32);
+    return out;
+  }
+
+  Json out_ = with_room();
 };
 
 bool is_nested(const Json& value) {

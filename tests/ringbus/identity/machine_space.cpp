@@ -1,6 +1,8 @@
 #include "tests/ringbus/identity/machine_space.h"
 
 #include <algorithm>
+#include <functional>
+#include <span>
 #include <stdexcept>
 
 #include <nlohmann/json.hpp>
@@ -178,20 +180,39 @@ void MachineSpace::learn(const Row& refused, const std::vector<std::string>& com
     return std::count(keys.begin(), keys.end(), key);
   };
   const auto before = how_often(complaints_of_row);
+  std::vector<std::size_t> read;
+  for (std::size_t f = 0; f < refused.size(); ++f)
+    if (refused[f] != kAbsent) read.push_back(f);
+  /// True if the complaint goes away when all these factors take other levels, each level of each being tried.
+  const auto matter = [&](std::span<const std::size_t> factors) {
+    std::size_t levels = 0;
+    for (const std::size_t f : factors) levels = std::max(levels, all[f].size());
+    for (std::size_t step = 1; step < levels; ++step) {
+      Row other = refused;
+      for (const std::size_t f : factors)
+        other[f] = all[f][(static_cast<std::size_t>(refused[f]) + step) % all[f].size()];
+      normalise(other, random, all);
+      if (how_often(complaints(other)) < before) return true;
+    }
+    return false;
+  };
   Refusal together;
   Domains with_these = all;
-  for (std::size_t f = 0; f < refused.size(); ++f) {
-    if (refused[f] == kAbsent) continue;
-    const bool matters = std::any_of(all[f].begin(), all[f].end(), [&](int level) {
-      Row other = refused;
-      other[f] = level;
-      if (level != refused[f]) normalise(other, random, all);
-      return level != refused[f] && how_often(complaints(other)) < before;
-    });
-    if (!matters) continue;
+  /// Most factors have no part in a refusal, and eight of them are found so at once.
+  const std::function<void(std::span<const std::size_t>)> narrow = [&](std::span<const std::size_t> factors) {
+    if (!matter(factors)) return;
+    if (factors.size() > 1) {
+      narrow(factors.first(factors.size() / 2));
+      narrow(factors.subspan(factors.size() / 2));
+      return;
+    }
+    const std::size_t f = factors[0];
     together.push_back({f, refused[f]});
     with_these[f] = {refused[f]};
-  }
+  };
+  constexpr std::size_t kAtOnce = 8;
+  for (std::size_t i = 0; i < read.size(); i += kAtOnce)
+    narrow(std::span(read).subspan(i, std::min(kAtOnce, read.size() - i)));
   bool believed = !together.empty();
   for (int trial = 0; believed && trial < 20; ++trial) {
     const Row other = draw_any(random, with_these);
