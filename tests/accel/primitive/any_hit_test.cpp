@@ -87,6 +87,7 @@ TEST(AnyHit, AnswersKeepTheirWishes) {
 }
 
 // A closed ball seen from without: its near half shows its front, its far half its back, mirrored or not.
+// Others reported this kind of fault: FBX2glTF 31, GLTFKit2 26.
 TEST(AnyHit, CullsByTheSideThatShows) {
   for (const float mirror : {1.0f, -1.0f}) {
     for (const bool procedural : {false, true}) {

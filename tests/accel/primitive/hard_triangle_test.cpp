@@ -199,6 +199,7 @@ TEST(HardTriangle, WithoutAreaIsMissed) {
   }
 }
 
+// Others reported this kind of fault: tinybvh 156.
 TEST(HardTriangle, RaysWithNanOrInfinityAreRejected) {
   const scene::Scene scene = icosphere_scene(2);
   RayBatch rays;

@@ -79,6 +79,7 @@ TEST(BruteForce, AgreesOnRaysOfAnyBits) {
 }
 
 // Geometry at the ends of what floats can hold.
+// Others reported this kind of fault: svenstaro/bvh 44, Ignis 3.
 TEST(BruteForce, AgreesOnGeometryOfAnyScale) {
   for (const float scale : {1e-38f, 1e-20f, 1e-6f, 1e6f, 1e15f, 1e25f}) {
     scene::Scene scene = icosphere_scene(1, Vec3{0}, 1);
@@ -130,6 +131,7 @@ TEST(BruteForce, AgreesOnSpheresInSkewedInstances) {
     EXPECT_EQ(brute.differences(build_sequential(scene, width)), 0u) << "CAROUSEL_SEED=" << run_seed();
 }
 
+// Others reported this kind of fault: svenstaro/bvh 44, Ignis 3.
 TEST(BruteForce, AgreesOnDegenerateTriangles) {
   Random random(16);
   std::vector<Vec3> corners;

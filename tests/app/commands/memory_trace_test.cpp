@@ -18,6 +18,7 @@ const std::string kMachine =
     "engine: {kind: cycle, threads: 1, what_if: false}\ntopology: {resources: 4}\nrays: {slots_per_resource: 64}\n"
     "packets: {rays: 8}\ncollections: {ready: 8, capacity: 16384}\n";
 
+// Others reported this kind of fault: ramulator2 104, 113.
 TEST(MemoryTrace, PlaysWhatARunAskedFor) {
   const Program program;
   const std::string memory = "memory: {l2_kib: 4, dram: {preset: gddr6_14, queue: 8}}\n";

@@ -118,6 +118,7 @@ TEST(RunAgain, HitsAreAListOfRays) {
 }
 
 /// Records of rays, states of paths and the film have places of their own in the simulated memory.
+// Others reported this kind of fault: ramulator2 51, 88.
 TEST(RunAgain, RequestsToMemoryPlayWhateverIsInMemory) {
   const Program program;
   program.write("a.yaml",

@@ -137,6 +137,7 @@ TEST(RayCsv, ReadsWindowsLinesAndNoLastNewline) {
   EXPECT_EQ(read_rays_csv(in, "r.csv").size(), 2u);
 }
 
+// Others reported this kind of fault: tinybvh 156.
 TEST(RayCsv, RefusesBadRowsAllTogether) {
   EXPECT_THAT(problems(kHeader + "0,camera,0,0,0,0,0,1,0,inf\n"
                                  "1,primary,0,x,0,0,0,1,0,inf\n"

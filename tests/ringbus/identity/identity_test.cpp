@@ -20,6 +20,7 @@ const CoveringArray& the_array() {
 }
 
 // Of the same suite as the machines that run, since to make the array takes longer than to run most of them.
+// Others reported this kind of fault: tt-metal 33222, 54626.
 TEST(Identity, TheArrayHoldsEveryPairThatAMachineCanHave) {
 #ifdef __SANITIZE_THREAD__
   GTEST_SKIP() << "the array is made on one thread, and takes minutes here";
@@ -143,6 +144,7 @@ TEST(Identity, MachinesUnderVirtualTimeGiveTheReferenceTracersDigest) {
 }
 
 // Threads take turns on a core in the middle of a step.
+// Others reported this kind of fault: oneTBB.
 TEST(Identity, MoreThreadsThanCores) {
   Scenes scenes;
   std::mt19937 random(6151 * run_seed());

@@ -49,6 +49,7 @@ std::string text(const Config& c) {
                      c.workload.traffic.packet_bytes);
 }
 
+// Others reported this kind of fault: tt-metal 33222, 54626; gem5 2654, tt-metal 54835.
 TEST(Traffic, EveryPacketIsDeliveredOnceAndNoneFasterThanAlone) {
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(150)); ++seed) {
     const Config c = random_network(seed);
@@ -207,6 +208,7 @@ TEST(TrafficPlan, FullLoadIsMeasured) {
   }
 }
 
+// Others reported this kind of fault: gem5 2654, tt-metal 54835.
 TEST(TrafficPlan, SourcesHaveTheRateTheyAreAskedFor) {
   for (const Pattern pattern : {Pattern::kUniform, Pattern::kBursty}) {
     for (const double rate : {0.0003, 0.01, 0.1, 0.5, 0.88}) {

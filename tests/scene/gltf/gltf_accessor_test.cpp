@@ -68,6 +68,7 @@ TEST(GltfAccessor, SparseReplacesElementsOfTheBase) {
   EXPECT_EQ(b.load().meshes[0].positions, (std::vector<Vec3>{{0, 0, 0}, {5, 6, 7}, {1, 1, 0}, {8, 9, 10}}));
 }
 
+// Others reported this kind of fault: godot 76875, DiligentFX 265.
 TEST(GltfAccessor, SparseWithoutABaseStartsFromZeros) {
   GltfBuilder b = GltfBuilder::square();
   const int indices = b.view(std::vector<std::uint8_t>{2}), values = b.view(std::vector<float>{5, 6, 7});
@@ -78,6 +79,7 @@ TEST(GltfAccessor, SparseWithoutABaseStartsFromZeros) {
   EXPECT_EQ(b.load().meshes[0].positions, (std::vector<Vec3>{{0, 0, 0}, {0, 0, 0}, {5, 6, 7}, {0, 0, 0}}));
 }
 
+// Others reported this kind of fault: godot 76875, DiligentFX 265.
 TEST(GltfAccessor, SparseIndicesWithoutABaseAreRead) {
   GltfBuilder b = GltfBuilder::square();
   const int indices = b.view(std::vector<std::uint8_t>{1, 2}), values = b.view(std::vector<std::uint16_t>{1, 2});

@@ -50,6 +50,7 @@ TEST(GltfMalformed, OtherVersions) {
   expect_text_refused(R"({"asset": {"version": "1.1"}, "meshes": {"box": {}}})", "/asset/version", "\"1.1\"");
 }
 
+// Others reported this kind of fault: glTFast 112.
 TEST(GltfMalformed, RequiredExtensionIsRefusedByName) {
   for (const char* name : {"KHR_texture_basisu", "VENDOR_unheard_of"}) {
     GltfBuilder b = GltfBuilder::square();
@@ -58,6 +59,7 @@ TEST(GltfMalformed, RequiredExtensionIsRefusedByName) {
   }
 }
 
+// Others reported this kind of fault: glTFast 112.
 TEST(GltfMalformed, OptionalExtensionIsIgnoredWithOneWarning) {
   GltfBuilder b = GltfBuilder::square();
   b.json["extensionsUsed"] = {"KHR_materials_dispersion", "KHR_materials_unlit", "VENDOR_unheard_of"};

@@ -43,6 +43,7 @@ TEST(ImageDecode, JpegIsRead) {
   EXPECT_NEAR(image.rgba[0], 128, 2);
 }
 
+// Others reported this kind of fault: rerun 10766, glTF 1561.
 TEST(ImageDecode, JpegOfFourInksBecomesRgb) {
   std::vector<unsigned char> inks;
   for (int i = 0; i < 16 * 16; ++i) inks.insert(inks.end(), {255, 128, 0, 128});  // inverted: 255 is no ink
@@ -77,6 +78,7 @@ std::vector<unsigned char> raw_png(int width, int depth, int colour, const std::
   return out;
 }
 
+// Others reported this kind of fault: rerun 10766, glTF 1561.
 TEST(ImageDecode, PngOfEveryDepthIsWidened) {
   // 16 bits are rounded: 0x80ff / 257 = 128.49. The file's curve, here linear, is not applied.
   EXPECT_EQ(picture_of(raw_png(1, 16, PNG_COLOR_TYPE_RGB, {0x80, 0xff, 0x00, 0x7f, 0xff, 0xff},

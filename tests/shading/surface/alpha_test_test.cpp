@@ -54,6 +54,7 @@ TEST(AlphaTest, TheCutoffItselfIsSolid) {
   EXPECT_FALSE(accepts(scene, 0.7f, 0.2f));
 }
 
+// Others reported this kind of fault: UniVRM 2031, qmuntal/gltf 98.
 TEST(AlphaTest, VertexColoursAndFactorCountToo) {
   scene::Scene scene = cut_square(scene::AlphaMode::kMask, 1.0f);
   scene.meshes[0].colors = {{1, 1, 1, 1}, {1, 1, 1, 0}, {1, 1, 1, 0}, {1, 1, 1, 1}};  // fades along x

@@ -102,6 +102,7 @@ void expect_right_sides(const scene::Scene& scene, const Vec2& b) {
   ASSERT_LT(traced_side(scene, back), 0.0);
 }
 
+// Others reported this kind of fault: mitsuba3 1871, trimesh 2524.
 TEST(SpawnPoint, IsOnItsSideOfRandomTriangles) {
   Cases cases;
   for (int i = 0; i < 20000; ++i) {
@@ -120,6 +121,7 @@ TEST(SpawnPoint, IsOnItsSideOfRandomInstances) {
   }
 }
 
+// Others reported this kind of fault: mitsuba3 1871, trimesh 2524.
 TEST(SpawnPoint, IsOnItsSideFarAway) {
   Cases cases;
   for (const float away : {1e6f, 1e7f})
@@ -157,6 +159,7 @@ TEST(SpawnPoint, OfASingularInstanceLeavesItsWorldSpaceTriangle) {
   }
 }
 
+// Others reported this kind of fault: FBX2glTF 31, GLTFKit2 26.
 TEST(SpawnPoint, SidesFollowTheWindingThroughMirroredInstances) {
   scene::Scene scene = empty_scene();
   add_material(scene, matte(Vec3{1}));

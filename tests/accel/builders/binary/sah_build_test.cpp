@@ -92,6 +92,7 @@ TEST(SahBuild, HoldsEveryPrimitiveOnce) {
     for (const std::uint32_t leaf : {1u, 4u, 8u, 16u}) build_and_check(random_boxes(count, count), leaf);
 }
 
+// Others reported this kind of fault: svenstaro/bvh 44, Ignis 3.
 TEST(SahBuild, KeepsDepthWhenAllCentroidsCoincide) {
   std::vector<Aabb> boxes(5000);
   for (std::size_t i = 0; i < boxes.size(); ++i) {

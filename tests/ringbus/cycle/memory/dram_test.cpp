@@ -45,6 +45,7 @@ TEST(Dram, AnIsolatedReadTakesTheSumOfItsCommands) {
   }
 }
 
+// Others reported this kind of fault: ramulator2 104, 113.
 TEST(Dram, ReachesItsPeak) {
   for (const Standard& s : kStandards) {
     const MemoryTraceResult out =
@@ -67,6 +68,7 @@ TEST(Dram, RandomReadsAreLimitedByActivates) {
 /// Reads of one row, which nothing but refreshes closes: one each nCCD long. A refresh that is due lets no further read
 /// begin; the row is closed nRTP after the last one (no sooner than the refresh is due, since nRTP is not below nCCD
 /// long), and the next read comes nRP + nRFC + nRCD later, and behind the command that starts the data clock again.
+// Others reported this kind of fault: ramulator2 104, 113.
 TEST(Dram, ARefreshTakesTheSumOfItsCommands) {
   for (const Standard& s : kStandards) {
     const cycle::DramTiming t = cycle::dram_timing(dram_config(s.preset).memory.dram);
