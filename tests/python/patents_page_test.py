@@ -62,7 +62,9 @@ class PatentsPage(unittest.TestCase):
             self.assertEqual(shown == '', works == 'no', f'{number}: a feature is shown by something, or is not built')
             count[works.split(',')[0]] += 1
         page = (ROOT / 'docs/studies/patents.md').read_text()
-        self.assertIn(f'Of {len(table)} features {count["yes"]} work, {count["narrowly"]} work narrowly and {count["no"]} do not.', page)
+        summed = f'{count["yes"]} work, {count["narrowly"]} work narrowly and {count["no"]} do not'
+        self.assertIn(f'Of {len(table)} features {summed}.', page)
+        self.assertIn(f'Of {len(table)} features of the patents {summed}', (ROOT / 'README.md').read_text())
 
     def test_each_row_is_shown_by_runs_or_says_why_not(self):
         works = {int(row[0]): row[2] for row in rows()}

@@ -1,5 +1,4 @@
-// Kinds of fault that other importers had, each with the answer by the specification. docs/internals/validation.md
-// lists them.
+// Kinds of fault that other importers had, each with the answer by the specification.
 #include <cmath>
 #include <filesystem>
 #include <fstream>
