@@ -1,5 +1,5 @@
 // Kinds of fault that other simulators had, as runs whose answers follow from the configuration.
-// docs/internals/validation.md lists them.
+// Each names the issue that reported it.
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sched.h>

@@ -1,4 +1,4 @@
-// A packet's bytes on a link, against the layout as it is documented (docs/how-it-works/cycle-engine.md).
+// A packet's bytes on a link, against the layout as it is documented (docs/internals/cycle-engine-exact.md).
 #include "ringbus/cycle/fabric/packet_size.h"
 
 #include <gtest/gtest.h>
