@@ -13,7 +13,7 @@ engine's, and some machine must then disagree.
 
 Left out, as in the page: any-hit calls, cull planes, bundles, bounding spheres, leaves held in nodes, faults,
 idle_resources_shade, distribute: random, hierarchical, point_to_point, raster, traffic; of graphs, ways that are
-not the shortest, and places of routers.
+not the shortest.
 """
 import argparse
 import copy
@@ -59,6 +59,9 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "memory.shape_stay": {"while_used": "until_replaced"}, "memory.path_state": {"memory": "free"}, "memory.film": {"memory": "free"},
         "memory.sky_map": {"memory": "free"}, "prefetcher.lines": {1: 2, 2: 1, 4: 3}, "prefetcher.reach": -7,
         "packets.results": {"per_shape": "mask", "message": "mask", "implied_order": "mask"},
+        "accuracy.transform": {"two_step_double": "two_step", "inverse_matrix": "two_step"},
+        "accuracy.triangle": {"double": "fast"},
+        "accuracy.box": {"double": "plain"}, "engine.clock_mhz": 333,
         "packets.made_per": {"child": "parent"}, "testers.own_rays": {"after": "before"}, "testers.window": 1}
 
 

@@ -142,7 +142,28 @@ def draw(seed, index):
             memory["fetch"] != "multicast" and r.random() < 0.4):
         topology["resources"] = pick([resources, 4, 5])
         topology.update(draw_graph(r, topology["resources"], config["packets"]["results"] in ("mask", "implied_order")))
+    draw_levels(random.Random(seed * 1000003 + index + 2), config)
     return config
+
+
+def draw_levels(r, config):
+    """Levels of accuracy, other clocks, routers with few places, and resources unlike the others, on some machines."""
+    pick, accuracy, topology = r.choice, config["accuracy"], config["topology"]
+    if r.random() < 0.4:
+        accuracy["triangle"] = pick(["fast", "watertight", "double"])
+    if config["bvh"].get("storage", "full") == "full" and r.random() < 0.4:
+        accuracy["box"] = pick(["plain", "conservative", "double"])
+    if config["scene"]["builtin"] == "instances" and r.random() < 0.8:
+        accuracy["transform"] = pick(["two_step", "two_step_double", "inverse_matrix"])
+        accuracy["instance_data"] = "forward"
+    if r.random() < 0.3:
+        config["engine"]["clock_mhz"] = pick([700, 1333])
+    for node in topology["nodes"] if topology["shape"] == "graph" else []:
+        if node.get("kind") == "router" and r.random() < 0.6:
+            node["buffers"] = pick([1, 2, 4])
+    if topology["shape"] in ("ring", "bidirectional", "multi_ring", "bus") and r.random() < 0.3:
+        box = {"units": 1, "interval_cycles": pick([1, 3]), "latency_cycles": 7}
+        topology["overrides"] = [{"resource": 0, "testers": {"box": box}}]
 
 
 def draw_treelets(r, config):
