@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include "core/numeric/student.h"
 #include "core/system/error.h"
 
 namespace carousel::app {
@@ -164,7 +164,7 @@ std::vector<MainEffect> main_effects(const SweepRows& all, std::size_t column) {
       const auto points = static_cast<std::size_t>(std::count(factors[f].level.begin(), factors[f].level.end(), level));
       LevelEffect one{factors[f].names[level], points, effects[f][level], std::nullopt};
       if (freedom >= 1) {
-        const double t = boost::math::quantile(boost::math::students_t(freedom), 0.975);
+        const double t = student_95(freedom);
         one.half_width = t * std::sqrt(squares / freedom * (1 / double(points) - 1 / double(y.size())));
       }
       effect.levels.push_back(std::move(one));

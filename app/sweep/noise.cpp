@@ -7,9 +7,8 @@
 #include <optional>
 #include <string>
 
-#include <boost/math/distributions/students_t.hpp>
-
 #include "core/numeric/noise_between.h"
+#include "core/numeric/student.h"
 
 namespace carousel::app {
 
@@ -38,7 +37,7 @@ std::optional<double> noise_of_repeats(const SweepRows& rows, std::size_t column
     freedom += static_cast<double>(values.size()) - 1;
   }
   if (freedom < 1) return std::nullopt;
-  return boost::math::quantile(boost::math::students_t(freedom), 0.975) * std::sqrt(2 * squares / freedom);
+  return student_95(freedom) * std::sqrt(2 * squares / freedom);
 }
 
 }  // namespace

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include "core/numeric/student.h"
 #include "report/accuracy/level_text.h"
 
 namespace carousel::report {
@@ -139,7 +139,7 @@ CostRatio cost_ratio(const Spread& a, const Spread& b) {
   const double count = static_cast<double>(pairs), mean = std::accumulate(logs.begin(), logs.end(), 0.0) / count;
   double squares = 0;
   for (const double x : logs) squares += (x - mean) * (x - mean);
-  const double t = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
+  const double t = student_95(count - 1);
   const double half = t * std::sqrt(squares / (count - 1) / count);
   return {std::exp(mean), std::exp(mean - half), std::exp(mean + half)};
 }

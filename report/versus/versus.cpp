@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 
+#include "core/numeric/student.h"
 #include "report/text/number_text.h"
 
 namespace carousel::report {
@@ -26,7 +26,7 @@ Interval interval_of(const std::vector<double>& values) {
   if (values.size() < 2) return out;
   double squares = 0;
   for (const double x : values) squares += (x - out.mean) * (x - out.mean);
-  const double t = boost::math::quantile(boost::math::students_t(count - 1), 0.975);
+  const double t = student_95(count - 1);
   out.half = t * std::sqrt(squares / (count - 1) / count);
   return out;
 }

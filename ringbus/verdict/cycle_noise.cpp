@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numeric>
 
-#include <boost/math/distributions/students_t.hpp>
+#include "core/numeric/student.h"
 
 namespace carousel::ringbus {
 
@@ -12,7 +12,7 @@ std::optional<CycleNoise> cycle_noise(const std::vector<double>& cycles, bool wh
   const double n = static_cast<double>(cycles.size()), mean = std::accumulate(cycles.begin(), cycles.end(), 0.0) / n;
   double squares = 0;
   for (const double one : cycles) squares += (one - mean) * (one - mean);
-  const double t = boost::math::quantile(boost::math::students_t(n - 1), 0.975);
+  const double t = student_95(n - 1);
   return CycleNoise{t * std::sqrt(2 * squares / (n - 1)) / mean, cycles.size() - 1, whole};
 }
 
