@@ -33,8 +33,8 @@ constexpr std::array kCharges{
            "independent"},
     Charge{"waiting_hits", "nodes and hits that wait for a later round are moved in no time, and always find room", "",
            "", "", "rays.query.rounds", "resume"},
-    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage", "quantised"},
-    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage", "quantised_12"},
+    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage",
+           "quantised,quantised_12"},
 };
 
 /// The value of a key as `--set` takes it; empty if the configuration has none.
@@ -50,11 +50,22 @@ std::string value_of(const nlohmann::ordered_json& config, std::string_view key)
   return at->is_string() ? at->get<std::string>() : at->dump();
 }
 
+/// `values`: with commas between them.
+bool is_one_of(std::string_view value, std::string_view values) {
+  while (!values.empty()) {
+    const std::size_t comma = std::min(values.find(','), values.size());
+    if (values.substr(0, comma) == value) return true;
+    values.remove_prefix(std::min(comma + 1, values.size()));
+  }
+  return false;
+}
+
 bool makes_use(const Charge& charge, const LocatedConfig& located, const nlohmann::ordered_json& json,
                const SceneFacts& scene) {
   const std::string_view key = charge.key;
   if (key.empty())
-    return value_of(json, charge.where_key) == charge.where_value && in_use(located.config, scene, charge.where_key);
+    return is_one_of(value_of(json, charge.where_key), charge.where_values) &&
+           in_use(located.config, scene, charge.where_key);
   return value_of(json, key) == charge.free && in_use(located.config, scene, key);
 }
 

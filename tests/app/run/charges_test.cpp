@@ -2,6 +2,9 @@
 // bytes.
 #include "app/charges/charges.h"
 
+#include <set>
+#include <string>
+
 #include <fmt/format.h>
 
 #include "tests/app/time/timed_run.h"
@@ -55,6 +58,10 @@ TEST_F(Charges, AreOfTheMachineAndSceneOfTheRun) {
   EXPECT_FALSE(lists(ring, "stack"));
   EXPECT_TRUE(lists(stack, "stack"));
   EXPECT_TRUE(lists(report(kMachine, {"bvh.storage=quantised"}), "quantised_nodes"));
+  EXPECT_TRUE(lists(report(kMachine, {"bvh.storage=quantised_12"}), "quantised_nodes"));
+  EXPECT_FALSE(lists(ring, "quantised_nodes"));
+  std::set<std::string> once;
+  for (const app::Charge& charge : app::all_charges()) EXPECT_TRUE(once.insert(charge.name).second) << charge.name;
   EXPECT_FALSE(lists(ring, "sky_map"));
   EXPECT_FALSE(lists(report(kMachine, {"memory.l1_kib=0"}), "l1_misses"));
   EXPECT_FALSE(report(kMachine, {"engine.kind=native"}).contains("charges"));
