@@ -155,7 +155,7 @@ void describe(V& v, const Report& r) {
   v.section("bottleneck", r.bottleneck, "class of parts that limits the machine, found by relaxing each in turn");
   v.section("cycle_noise", r.cycle_noise,
             "interval of engine.cycles in which those with another seed of the picture lie, by simulations with other "
-            "seeds; found with the bottleneck");
+            "seeds; found with the bottleneck, and not where a resource stops");
   v.section("faults", r.faults, "faults that were asked for and their cost");
   v.section("verify", r.verify, "comparison with the reference tracer, if asked for");
   v.section("digest", r.digest, "digests of the result: equal digests mean equal hits and an equal picture");

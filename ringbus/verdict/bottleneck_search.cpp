@@ -32,6 +32,7 @@ class Search {
     // The bottleneck is that of the whole machine, before a resource stops.
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
+    noise_seeds_ = stops_ ? 0 : run.noise_seeds;  // the whole machine's noise is not that of a run in which one stops
     what_ifs_ = what_ifs(config_, accel_);
     out_.gains.resize(what_ifs_.size());
   }
@@ -294,11 +295,11 @@ class Search {
 
   /// Simulates the pilot with other seeds: its places in the picture are the same, and their rays are others.
   void find_noise() {
-    if (run_.noise_seeds == 0) return;
-    pilots_.begin("other seeds", run_.noise_seeds, out_.paths);
+    if (noise_seeds_ == 0) return;
+    pilots_.begin("other seeds", noise_seeds_, out_.paths);
     std::deque<Config> machines;
     std::vector<const Config*> which;
-    for (std::uint64_t k = 1; k <= run_.noise_seeds; ++k)
+    for (std::uint64_t k = 1; k <= noise_seeds_; ++k)
       which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
     std::vector<double> cycles;
     for (const RunResult& result : simulate(which))
@@ -318,7 +319,7 @@ class Search {
     named.resize(std::min(named.size(), kMost));
     const std::uint64_t replicates = named.empty() ? 0 : kReplicates;
     std::deque<Config> machines;
-    for (std::uint64_t k = 1; k <= std::max(replicates, run_.noise_seeds); ++k) {
+    for (std::uint64_t k = 1; k <= std::max(replicates, noise_seeds_); ++k) {
       machines.push_back(with_other_seed(config_, k));
       for (const std::size_t i : named)
         if (k <= replicates) machines.push_back(with_other_seed(what_ifs_[i].relaxed, k));
@@ -340,7 +341,7 @@ class Search {
       }
     }
     out_.replicates = replicates;
-    if (run_.noise_seeds > 0) note_noise(std::move(cycles));
+    if (noise_seeds_ > 0) note_noise(std::move(cycles));
   }
 
   void greatest_first(std::vector<std::size_t>& classes) const {
@@ -374,6 +375,7 @@ class Search {
   const SearchedRun& run_;
   PilotRuns pilots_;
   bool stops_ = false;
+  std::uint64_t noise_seeds_ = 0;
   std::vector<WhatIf> what_ifs_;
   std::map<std::size_t, Relaxed> relaxed_;  // by index of what_ifs_
   RunResult base_;

@@ -43,7 +43,7 @@ struct Bottleneck {
   std::uint64_t replicates = 0;     ///< other seeds with which the whole frame was simulated
   double deviation = 0;             ///< distance of the run's cycles from those that the pilot foretells, as a fraction
   double uncertainty = 0;           ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
-  std::optional<CycleNoise> noise;  ///< of the run's cycles
+  std::optional<CycleNoise> noise;  ///< of the run's cycles; absent if a resource stops
   std::uint64_t noise_paths = 0;    ///< paths of each simulation that it was found with
   std::vector<Gain> gains;          ///< greatest first
   std::vector<GainPhase> phases;    ///< of the first pilot, in the order of time; one if nothing changes
@@ -63,7 +63,7 @@ struct Bottleneck {
 ///
 /// Of a whole frame the classes that may be named are simulated with two other seeds of the picture besides, and their
 /// intervals widened to hold what they gain there. The machine as configured is simulated with run.noise_seeds other
-/// seeds, the first pilot or the whole frame, for the noise of the run's cycles.
+/// seeds, the first pilot or the whole frame, for the noise of the run's cycles; not where a resource stops.
 ///
 /// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
 /// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.

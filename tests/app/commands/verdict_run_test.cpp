@@ -84,6 +84,18 @@ TEST_F(VerdictRun, TheLastFrameOfASeriesIsSearchedWithItsWarmCaches) {
   EXPECT_LT(report["cycle_noise"]["fraction"], 0.3);
 }
 
+// The search is of the whole machine, whose noise says nothing of cycles in which a resource stopped.
+TEST_F(VerdictRun, ARunInWhichAResourceStopsHasNoNoise) {
+  const std::vector<std::string> small{"engine.what_if=true", "image.width=48", "image.height=36", "image.samples=1",
+                                       "rays.slots_per_resource=16"};
+  std::vector<std::string> stops = small;
+  stops.emplace_back("faults={resource: {kind: stop, number: 1, after_rays: 200}}");
+  const Json report = run(kTerrain, stops);
+  EXPECT_FALSE(report["bottleneck"]["gains"].empty());
+  EXPECT_FALSE(report.contains("cycle_noise"));
+  EXPECT_TRUE(run(kTerrain, small).contains("cycle_noise"));
+}
+
 // 300 paths hardly fill 256 slots; the size that is told fills them, and no simulation is spent on the small one.
 TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
   const Json small = run(kTerrain, {"engine.what_if=true", "image.width=20", "image.height=15", "image.samples=1",
