@@ -44,13 +44,11 @@ Html rank_table(const char* key, const char* title, const Json& report, const Js
 Html machine_section(const Json& report, const Json& schema) {
   const Json* resources = find(report, "resources");
   const Json* links = find(report, "links");
-  const double cycles = number_at(report, "engine.cycles");
   Html out, tables;
   double most = 0;
   std::string busiest;
   if (resources && !resources->empty()) {
-    double most_tested = 0;
-    for (const Json& r : *resources) most_tested = std::max(most_tested, number_at(r, "rays_tested"));
+    const std::vector<double> uses = uses_of_resources(report);
     const bool timed = resources->front().contains("units");
     Table table = table_of("resources", "Resources", *resources, *find(schema, "properties.resources.items"));
     table.columns.insert(table.columns.begin() + 1,
@@ -58,10 +56,11 @@ Html machine_section(const Json& report, const Json& schema) {
                                 timed ? "greatest share of the cycles in which a kind of its units was busy"
                                       : "rays tested, over those of the resource that tested most"});
     for (std::size_t i = 0; i < resources->size(); ++i) {
-      const double use = use_of_resource((*resources)[i], cycles, most_tested);
-      table.rows[i].insert(table.rows[i].begin() + 1, share(use));
-      if (use > most) busiest = fmt::format("resource {}", table.rows[i][0].text);
-      most = std::max(most, use);
+      const bool tests = i < uses.size();
+      table.rows[i].insert(table.rows[i].begin() + 1, tests ? share(uses[i]) : cell(""));
+      if (!tests || uses[i] <= most) continue;
+      busiest = fmt::format("resource {}", table.rows[i][0].text);
+      most = uses[i];
     }
     out += markup("<p>The colour of a resource is {}. Of all, {} is highest, with {}.</p>\n",
                   timed ? "the share of the cycles in which its busiest kind of unit was testing"

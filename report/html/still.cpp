@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "report/html/machine_places.h"
+#include "report/run/report_json.h"
 #include "report/text/number_text.h"
 
 namespace carousel::report::html {
@@ -176,7 +177,9 @@ std::vector<double> uses_of_resources(const Json& report) {
   if (!resources) return out;
   double most_tested = 0;
   for (const Json& r : *resources) most_tested = std::max(most_tested, number_at(r, "rays_tested"));
-  for (const Json& r : *resources) out.push_back(use_of_resource(r, number_at(report, "engine.cycles"), most_tested));
+  const std::size_t testing = resources_with_units(report.value("config", Json::object()), resources->size());
+  for (std::size_t i = 0; i < testing; ++i)
+    out.push_back(use_of_resource((*resources)[i], number_at(report, "engine.cycles"), most_tested));
   return out;
 }
 
@@ -292,12 +295,13 @@ Html still_machine(const Json& report) {
     const bool hub = i >= places.resources;
     std::string name = hub ? fmt::format("B{}", i - places.resources) : std::to_string(i);
     if (names && i < names->size()) name = text_at((*names)[i], "name", name);
-    const Colour colour = scale_colour(hub ? 0 : uses[i] / most);
+    const bool tests = i < uses.size();  // not a hub, nor a packet process that serves others
+    const Colour colour = scale_colour(tests ? uses[i] / most : 0);
     if (hub && bus)
       boxes += box((x0 + x1) / 2, at[i].y, x1 - x0 + kBox, "bus", "", nullptr);
     else
-      boxes += box(at[i].x, at[i].y, kBox, name, hub || !valued ? "" : fmt::format("{:.0f} %", 100 * uses[i]),
-                   hub ? nullptr : &colour);
+      boxes += box(at[i].x, at[i].y, kBox, name, tests && valued ? fmt::format("{:.0f} %", 100 * uses[i]) : "",
+                   tests ? &colour : nullptr);
   }
   const double margin = kBox / 2 + 6, w = std::max(x1 - x0 + 2 * margin, 240.0), h = y1 - y0 + 2 * margin;
   return drawing((x0 + x1 - w) / 2, y0 - margin, w, h, lines + boxes,

@@ -35,7 +35,7 @@ Html still_machine(const nlohmann::ordered_json& report);
 /// tested over those of the resource that tested most.
 double use_of_resource(const nlohmann::ordered_json& resource, double cycles, double most_tested);
 
-/// The use of every resource, in their order.
+/// The use of every resource that has units, in their order: packet processes that serve others are the last ones.
 std::vector<double> uses_of_resources(const nlohmann::ordered_json& report);
 
 }  // namespace carousel::report::html

@@ -78,7 +78,8 @@ void terminal_table(std::string& out, const Json& schema, bool traffic, std::str
 }
 
 void rows(std::string& out, const std::string& path, const Json& schema) {
-  out += fmt::format("| `{}` | {} | {} |\n", path, schema.value("unit", ""), escaped(schema.value("description", "")));
+  out += fmt::format("| `{}` | {} | {} |\n", path, escaped(schema.value("unit", "")),
+                     escaped(schema.value("description", "")));
   const bool list = schema.contains("items") && schema["items"].contains("properties");
   const Json& inside = list ? schema["items"] : schema;
   if (!inside.contains("properties")) return;

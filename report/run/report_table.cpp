@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -20,7 +21,8 @@ namespace {
 
 /// Least, mean and greatest over the resources: the balance of the machine without a line for each resource.
 template <class Value>
-void spread_line(Table& table, std::string_view name, const std::vector<Resource>& resources, const Value& value) {
+void spread_line(Table& table, std::string_view name, std::span<const Resource> resources, const Value& value) {
+  if (resources.empty()) return;
   std::uint64_t least = value(resources.front()), most = least, sum = 0;
   for (const Resource& resource : resources) {
     least = std::min(least, value(resource));
@@ -62,15 +64,19 @@ void rank_lines(Table& table, const std::vector<Rank>& ranks, std::vector<RankLi
                links.size() - std::min(kRankLinkLines, links.size()));
 }
 
-void resource_lines(Table& table, const std::vector<Resource>& resources) {
-  table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean", fmt::format("{} of them", resources.size()),
-             "least", "mean", "most");
-  spread_line(table, "rays", resources, [](const Resource& r) { return r.counts.rays_completed; });
-  spread_line(table, "rays tested", resources, [](const Resource& r) { return r.counts.local_rays; });
-  spread_line(table, "box tests", resources, [](const Resource& r) { return r.tests.box; });
-  spread_line(table, "triangle tests", resources, [](const Resource& r) { return r.tests.triangle; });
-  spread_line(table, "packets issued", resources, [](const Resource& r) { return r.counts.packets_issued; });
-  spread_line(table, "packets seen", resources, [](const Resource& r) { return r.counts.visits; });
+/// Packet processes that serve resources have no rays and no units, but issue all packets.
+void resource_lines(Table& table, const std::vector<Resource>& resources, const nlohmann::ordered_json& config) {
+  const std::span all(resources);
+  const std::span testing = all.first(resources_with_units(config, all.size()));
+  const std::span issuing = testing.size() < all.size() ? all.subspan(testing.size()) : all;
+  table.line("resources", "{:<18} {:>14} {:>14} {:>14}   max/mean", fmt::format("{} of them", testing.size()), "least",
+             "mean", "most");
+  spread_line(table, "rays", testing, [](const Resource& r) { return r.counts.rays_completed; });
+  spread_line(table, "rays tested", testing, [](const Resource& r) { return r.counts.local_rays; });
+  spread_line(table, "box tests", testing, [](const Resource& r) { return r.tests.box; });
+  spread_line(table, "triangle tests", testing, [](const Resource& r) { return r.tests.triangle; });
+  spread_line(table, "packets issued", issuing, [](const Resource& r) { return r.counts.packets_issued; });
+  spread_line(table, "packets seen", testing, [](const Resource& r) { return r.counts.visits; });
   if (!resources.front().stalls) return;
   StallCounts stalls;
   for (const Resource& r : resources) stalls += *r.stalls;
@@ -380,7 +386,7 @@ std::string report_table(const Report& report) {
   packet_lines(table, report);
   if (report.effects && report.effects->spared) table.text(spared_table(*report.effects->spared));
   if (report.shading.proof) proof_line(table, *report.shading.proof);
-  if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources);
+  if (report.resources && !report.resources->empty()) resource_lines(table, *report.resources, report.config);
   if (report.links && !report.links->empty()) link_line(table, *report.links);
   table.text(part_table(report.parts));
   if (report.host.ray_queues) ray_queue_lines(table, *report.host.ray_queues);

@@ -284,7 +284,8 @@ void resource_words(Words& w) {
       .item("rays tested N N N N", "resources[].rays_tested")
       .item("box tests N N N N", "resources[].box_tests")
       .item("triangle tests N N N N", "resources[].triangle_tests")
-      .item("packets issued N N N N", "resources[].packets_issued")
+      .item("packets issued N N N N", "resources[].packets_issued",
+            "packets issued from a resource's collections; where packet processes serve resources, from theirs")
       .item("packets seen N N N N", "resources[].packets_seen");
   w.line("stalls");
   for (const Counter<StallCounts>& row : kCounters<StallCounts>)

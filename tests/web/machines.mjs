@@ -45,6 +45,7 @@ export const all = {
     'links: [{ring: "left[0], left[1], left[3], left[2], door[0]", both: true}, ' +
     '{ring: "right[0], right[1], right[3], right[2], door[1]", both: true}, {from: "door[0]", to: "door[1]", both: true}]}']),
   spread: machine('demo', [...cycle, 'topology={shape: graph, nodes: [{name: r, count: 12}], links: [{mesh: [4, 3]}]}']),
+  processes: machine('packet_processes', small),
   many: shape('ring', 'topology.resources=96', 'rays.slots_per_resource=256'),
   bundles: machine('bundle_tester', cycle),
   native_life: {command: 'follow', config: 'demo', sets: small, options: ['--pixel', '3,9', '--shadow']},

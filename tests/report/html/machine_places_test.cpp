@@ -63,6 +63,22 @@ TEST(StillMachine, HasANumberForEachOf64Resources) {
   for (int i = 0; i < 64; ++i) EXPECT_NE(svg.find(">" + std::to_string(i) + "</text>"), svg.npos) << i;
 }
 
+// A packet process that serves resources has no units, and so no colour of one that does nothing.
+TEST(StillMachine, PacketProcessesAreNotIdleResources) {
+  Json report = report_of("graph", 3, {{0, 2}, {2, 1}});
+  report["config"]["topology"]["nodes"] = {{{"kind", "resource"}, {"count", 2}},
+                                           {{"kind", "packet_process"}, {"serves", "r[*]"}}};
+  report["drawing"] = {{{"name", "r[0]"}, {"x_mm", 0}, {"y_mm", 0}},
+                       {{"name", "r[1]"}, {"x_mm", 4}, {"y_mm", 0}},
+                       {{"name", "p"}, {"x_mm", 2}, {"y_mm", 3}}};
+  report["resources"][2] = {{"resource", 2}, {"units", {{"box", {{"busy", 0}}}}}};
+  EXPECT_EQ(uses_of_resources(report), (std::vector<double>{0.1, 0.1}));
+  const std::string svg = still_machine(report).str();
+  EXPECT_NE(svg.find(">10 %</text>"), svg.npos);
+  EXPECT_EQ(svg.find(">0 %</text>"), svg.npos);
+  EXPECT_NE(svg.find(">p</text>"), svg.npos);
+}
+
 TEST(StillGains, CutALargeLossAndSaySo) {
   const std::string bars = still_gains({{"a", "+10 %", 0.1, 0.05, 0.15}, {"b", "-75 %", -0.75, -0.8, -0.7}}).str();
   EXPECT_NE(bars.find("(cut)"), bars.npos);

@@ -1,6 +1,8 @@
 #include "report/run/report_page.h"
 
 #include <fstream>
+#include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -37,6 +39,20 @@ TEST(ReportPage, ExplainsTheTenNumbersThatItBeginsWith) {
 TEST(ReportPage, EveryItemOfTheTerminalHasAMeaning) {
   EXPECT_THAT(report_markdown(), testing::Not(testing::ContainsRegex("\\|  \\|\n")));
   for (const TerminalWord& word : terminal_words()) EXPECT_FALSE(word.key.empty() && word.meaning.empty()) << word.text;
+}
+
+// A row with a bar of its own has a column too many.
+TEST(ReportPage, EachRowHasTheColumnsOfItsTable) {
+  std::istringstream page(report_markdown());
+  std::size_t columns = 0;
+  for (std::string line; std::getline(page, line);) {
+    std::size_t bars = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) bars += line[i] == '|' && (i == 0 || line[i - 1] != '\\');
+    if (line.starts_with('|') && columns > 0) {
+      EXPECT_EQ(bars, columns) << line;
+    }
+    columns = line.starts_with('|') ? bars : 0;
+  }
 }
 
 TEST(ReportPage, HasKeysOfListsAndOfSections) {

@@ -1,5 +1,8 @@
 #include "report/run/report_table.h"
 
+#include <string>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -29,6 +32,26 @@ TEST(ReportTable, SaysWhatHappened) {
   EXPECT_THAT(table, HasSubstr("verify       990 rays traced again, 1 mismatches; pixel 3\n"));
   EXPECT_THAT(table, HasSubstr("digest       hits 0123   image 4567\n"));
   EXPECT_THAT(table, Not(HasSubstr("INCOMPLETE")));
+}
+
+// The last row is a packet process, which issues for the resource that it serves.
+TEST(ReportTable, LeavesPacketProcessesOutOfTheResources) {
+  Report report = sample_report();
+  ASSERT_EQ(report.resources->size(), 2U);
+  report.config["topology"] = {{"shape", "graph"},
+                               {"nodes", {{{"kind", "resource"}}, {{"kind", "packet_process"}, {"serves", "r"}}}}};
+  for (const bool serves : {true, false}) {
+    (*report.resources)[0].counts = {.rays_completed = 500, .local_rays = 700};
+    (*report.resources)[1].counts = {.packets_issued = 90};
+    if (!serves) report.config["topology"]["nodes"][1].erase("serves");
+    const std::string table = report_table(report);
+    const std::size_t at = table.find("resources    ");
+    ASSERT_NE(at, std::string::npos);
+    EXPECT_EQ(table.compare(at, 22, serves ? "resources    1 of them" : "resources    2 of them"), 0) << table;
+    const auto line = [&](const char* name, const char* least) { return fmt::format("{:<18} {:>14}", name, least); };
+    EXPECT_THAT(table.substr(at), HasSubstr(line("rays", serves ? "500" : "0")));
+    EXPECT_THAT(table.substr(at), HasSubstr(line("packets issued", serves ? "90" : "0")));
+  }
 }
 
 TEST(ReportTable, SaysWhatFaultsCost) {

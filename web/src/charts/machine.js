@@ -12,7 +12,10 @@ export function machine(context) {
   const {tables: [resources, links], colours, facts, width, height} = context;
   const useOf = (table) => table.columns.findIndex((c) => ['busiest unit', 'load', 'use'].includes(c));
   const of = resources ? resources.columns[useOf(resources)] : 'use';
-  const resourceUse = resources ? resources.rows.map((r) => r[useOf(resources)]) : new Array(facts.resources).fill(0);
+  // A packet process that serves resources has no units, and so no use.
+  const resourceUse = resources
+    ? resources.rows.map((r) => (typeof r[useOf(resources)] === 'number' ? r[useOf(resources)] : null))
+    : new Array(facts.resources).fill(0);
   const from = links ? links.column('from') : 0, to = links ? links.column('to') : 0;
   const ends = links ? links.rows.map((r) => [r[from], r[to]]) : [];
   const linkUse = links ? links.rows.map((r) => r[useOf(links)]) : [];
@@ -28,19 +31,20 @@ export function machine(context) {
   const named = size >= 15, valued = size >= 38;
   const node = (i) => {
     const hub = i >= facts.resources;
-    const colour = hub ? colours.panel : scaleColour((now.resources[i] ?? 0) / most);
+    const tests = !hub && resourceUse[i] !== null;
+    const colour = tests ? scaleColour((now.resources[i] ?? 0) / most) : colours.panel;
     const drawn = facts.drawing?.[i].name;
     const name = drawn ?? (hub ? (bus ? 'bus' : `${hubName} ${i - facts.resources}`) : `resource ${i}`);
     const short = drawn ?? (hub ? (bus ? 'bus' : `${hubName[0].toUpperCase()}${i - facts.resources}`) : `${i}`);
-    const ink = hub ? colours.ink : luminance(colour) > 0.5 ? '#000' : '#fff';
+    const ink = !tests ? colours.ink : luminance(colour) > 0.5 ? '#000' : '#fff';
     return {
-      id: `${i}`, name, x: at[i][0], y: at[i][1], value: hub ? undefined : now.resources[i],
+      id: `${i}`, name, x: at[i][0], y: at[i][1], value: tests ? now.resources[i] : undefined,
       symbol: hub ? (bus ? 'rect' : 'diamond') : resources ? 'roundRect' : 'circle',
       symbolSize: hub && bus ? [width * 0.8, 22] : size,
       itemStyle: {color: colour, borderColor: colours.soft, borderWidth: 1},
       label: {show: named || (hub && bus), color: ink, lineHeight: 14,
         fontSize: drawn ? Math.max(7, Math.min(12, Math.floor(1.7 * size / short.length))) : size < 24 ? 9 : 12,
-        formatter: valued && !hub ? `${short}\n${Math.round(100 * (now.resources[i] ?? 0))} %` : short},
+        formatter: valued && tests ? `${short}\n${Math.round(100 * (now.resources[i] ?? 0))} %` : short},
     };
   };
   const thick = ends.length > 200 ? 1 : ends.length > 60 ? 2 : 4;
@@ -71,7 +75,8 @@ export function machine(context) {
           linkDetails(links, dataIndex);
       const i = Number(d.id);
       if (!(i < facts.resources)) return d.name;
-      return `${d.name}<br>${of} ${percent(now.resources[i] ?? 0)}` + resourceDetails(resources, i);
+      const use = resourceUse[i] === null ? '' : `<br>${of} ${percent(now.resources[i] ?? 0)}`;
+      return d.name + use + resourceDetails(resources, i);
     }},
     visualMap: {type: 'continuous', min: 0, max: most, calculable: false, seriesIndex: 9, inRange: {color: kScale},
       orient: 'horizontal', left: 'center', bottom: 0, itemHeight: Math.min(200, width * 0.4),
