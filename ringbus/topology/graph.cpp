@@ -131,14 +131,13 @@ class VisitJudge {
     const std::vector<std::uint32_t> of_routers = smallest(false);
     if (of_routers.empty())
       plan_.verdict = {false,
-                       fmt::format("room: a circle of links holds {} packets ({}), and {} put up to {} each on the "
+                       fmt::format("room: a circle of links holds {} packets ({}), and {} {} up to {} each on the "
                                    "way, so every resource has egress places for all of them",
-                                   held(circle), named(circle), who(), each_)};
+                                   held(circle), named(circle), who(), put(), each_)};
     else if (!keeps(of_routers))
-      plan_.verdict = {true,
-                       fmt::format("a circle of links holds {} packets ({}), and {} put up to {} each on the way; "
-                                   "routers with buffers: auto have room for all of them",
-                                   held(of_routers), named(of_routers), who(), each_)};
+      plan_.verdict = {true, fmt::format("a circle of links holds {} packets ({}), and {} {} up to {} each on the way; "
+                                         "routers with buffers: auto have room for all of them",
+                                         held(of_routers), named(of_routers), who(), put(), each_)};
   }
 
  private:
@@ -162,8 +161,10 @@ class VisitJudge {
   }
   /// Those who issue packets.
   std::string who() const {
-    return fmt::format("{} {}", issuers_, graph_.manager_of.empty() ? "resources" : "packet processes");
+    if (graph_.manager_of.empty()) return fmt::format("{} resource{}", issuers_, issuers_ == 1 ? "" : "s");
+    return fmt::format("{} packet process{}", issuers_, issuers_ == 1 ? "" : "es");
   }
+  const char* put() const { return issuers_ == 1 ? "puts" : "put"; }
   std::string named(const std::vector<std::uint32_t>& circle) const { return circle_text(graph_, circle); }
   /// The links of each lane are one ring: as many as nodes, all of which are resources that reach one another.
   bool is_rings() const {
@@ -177,9 +178,9 @@ class VisitJudge {
     if (circle.empty())
       plan_.verdict = {false, "no circle: links that wait for one another end at nodes with room for all packets"};
     else if (config_.flow == Flow::kCredits && on_the_way_ < held(circle))
-      plan_.verdict = {false, fmt::format("credits: {} with at most {} packets each put {} packets on the way, and the "
+      plan_.verdict = {false, fmt::format("credits: {} with at most {} packets each {} {} packets on the way, and the "
                                           "smallest circle of links holds {} ({}), so one place is always free",
-                                          who(), each_, on_the_way_, held(circle), named(circle))};
+                                          who(), each_, put(), on_the_way_, held(circle), named(circle))};
     else if (config_.flow == Flow::kBubble && is_rings() &&
              std::ranges::all_of(graph_.links, [](const Graph::Link& link) { return link.depth >= 2; }))
       plan_.verdict = {false,

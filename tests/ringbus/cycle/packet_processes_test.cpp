@@ -99,6 +99,15 @@ TEST_F(PacketProcesses, BoundThePacketsOnTheWay) {
   EXPECT_EQ(facts.served, "packet processes: p[0] serves r[0], r[1], r[2]; p[1] serves r[3], r[4], r[5]\n");
 }
 
+TEST_F(PacketProcesses, OneIsSpokenOfAsOne) {
+  const std::string one =
+      "scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology:\n  shape: graph\n  link: {depth: 2}\n"
+      "  nodes: [{name: r, count: 3}, {name: p, kind: packet_process, serves: 'r[*]'}, {name: l2, kind: cache}]\n"
+      "  links:\n    - {ring: 'r[*], p'}\n    - {from: 'r[*]', to: l2, both: true, carries: [shapes]}\n";
+  EXPECT_THAT(deadlock_verdict(load_config({one, "m.yaml"}).config).rule,
+              HasSubstr("credits: 1 packet process with at most 2 packets each puts 2 packets on the way"));
+}
+
 // One ray, one resource and its packet process: each packet crosses the link there and back, and nobody waits for the
 // way home of a ray's last one.
 TEST_F(PacketProcesses, ALinkIsPaidThereAndBack) {
