@@ -16,6 +16,10 @@ class BankOverlap {
   /// `after`: cycles from the last answer of a strip until it counts.
   explicit BankOverlap(Cycle after) : after_(after) {}
 
+  /// Answers of tests that a bank starts at `from`, each with the one before, come until `until`: longer than the bank
+  /// is busy. To be said before advance() passes `from`.
+  void expect(Cycle from, Cycle until) { chains_.push_back({from, until + after_}); }
+
   /// Takes the banks' times from the last call until `now`. Calls `each` with a function that takes a bank, which it
   /// must call for every bank. Times of calls must not decrease.
   template <class Each>
@@ -37,6 +41,11 @@ class BankOverlap {
         at = end;
       }
       answered_ = std::max(answered_, span.end - first.bank->interval() + first.bank->latency() + after_);
+      std::erase_if(chains_, [&](const Chain& chain) {
+        if (chain.from >= span.end) return false;
+        answered_ = std::max(answered_, chain.until);
+        return true;
+      });
       if (!first.bank->has_span(++first.index) || (first.span = first.bank->span(first.index)).begin >= now)
         lanes_.erase(lanes_.begin() + (&first - lanes_.data()));
     }
@@ -58,12 +67,17 @@ class BankOverlap {
     UnitBank::Span span;
   };
 
+  struct Chain {
+    Cycle from, until;
+  };
+
   /// No bank is busy.
   void wait(Cycle begin, Cycle end) {
     if (answered_ > begin) so_far_.latency += std::min(answered_, end) - begin;
   }
 
-  std::vector<Lane> lanes_;  // scratch: banks with times that are not taken yet
+  std::vector<Lane> lanes_;    // scratch: banks with times that are not taken yet
+  std::vector<Chain> chains_;  // whose first tests are in spans that are not taken yet
   Cycle after_, seen_ = 0, answered_ = 0;
   TestingCycles so_far_, taken_;
 };

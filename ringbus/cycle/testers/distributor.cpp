@@ -62,7 +62,7 @@ Cycle Distributor::decide(Cycle at) {
 }
 
 void Distributor::test(Cycle at, std::span<const std::uint32_t> slots, const IntersectionCounts& counts,
-                       std::uint64_t shape_bytes, std::vector<Cycle>& decided) {
+                       std::uint64_t shape_bytes, BankOverlap& overlap, std::vector<Cycle>& decided) {
   for (; decisions_begin_ < at && !decisions_.empty(); ++decisions_begin_) decisions_.pop_front();
   decisions_begin_ = std::max(decisions_begin_, at);
   ++counts_.packets;
@@ -90,7 +90,7 @@ void Distributor::test(Cycle at, std::span<const std::uint32_t> slots, const Int
     Cycle from = start;
     if (const std::uint64_t inversion = i == 0 ? inversion_passes(counts) : 0; inversion > 0)
       from = tester.units[UnitKind::kTransform].reserve(start, inversion).last;
-    const Cycle answer = stages_.through(tester.units, from, starts);
+    const Cycle answer = stages_.through(tester.units, from, starts, overlap);
     tester.free_at = std::max(start + 1, from);
     for (const auto [kind, bank] : tester.units) tester.free_at = std::max(tester.free_at, bank.free_at());
     counts_.tester_busy += tester.free_at - start;

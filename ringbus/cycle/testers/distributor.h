@@ -32,10 +32,11 @@ class Distributor {
   Distributor(const TestersConfig& testers, const RayStages& stages, const LinkConfig& link);
 
   /// The rays of the next packet. `at`: their IDs and shapes are at the distributor; not before the last packet's.
-  /// `slots`: in ray memory. `counts`: tests of all of them, which are taken as evenly spread over the rays. Sets
-  /// `decided` to the cycles in which the results have passed the decision point, ray by ray.
+  /// `slots`: in ray memory. `counts`: tests of all of them, which are taken as evenly spread over the rays. `overlap`:
+  /// of the testers' banks. Sets `decided` to the cycles in which the results have passed the decision point, ray by
+  /// ray.
   void test(Cycle at, std::span<const std::uint32_t> slots, const IntersectionCounts& counts, std::uint64_t shape_bytes,
-            std::vector<Cycle>& decided);
+            BankOverlap& overlap, std::vector<Cycle>& decided);
   /// Results have gone on together from the decision point.
   void part_went_on(std::size_t rays) {
     ++counts_.parts;

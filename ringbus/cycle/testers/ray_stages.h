@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/config/fields/cull_planes.h"
+#include "ringbus/cycle/testers/bank_overlap.h"
 #include "ringbus/cycle/testers/unit_bank.h"
 
 namespace carousel::ringbus::cycle {
@@ -15,8 +16,9 @@ struct RayStages {
   CullPlanesConfig::Order order = CullPlanesConfig::Order::kBoxFirst;
   bool inline_any_hit = true;
 
-  /// The last answer to `starts` tests of each kind, the first at `at`, beside the tests of others.
-  Cycle through(PerUnit<UnitBank>& units, Cycle at, const PerUnit<std::uint64_t>& starts) const {
+  /// The last answer to `starts` tests of each kind, the first at `at`, beside the tests of others. Answers that come
+  /// one after another are noted in `overlap`.
+  Cycle through(PerUnit<UnitBank>& units, Cycle at, const PerUnit<std::uint64_t>& starts, BankOverlap& overlap) const {
     const auto beside = [&](UnitKind kind, Cycle from) { return units[kind].reserve_beside(from, starts[kind]).last; };
     const Cycle moved = beside(UnitKind::kTransform, at);
     const bool planes_first = order == CullPlanesConfig::Order::kPlanesFirst && starts[UnitKind::kPlane] > 0;
@@ -28,10 +30,13 @@ struct RayStages {
       if (row.stage == Stage::kPrimitive) met = std::max(met, beside(row.kind, known));
     const Cycle looked_up = beside(UnitKind::kMicromap, met);
     const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, looked_up) : looked_up;
-    const Cycle buffered = beside(UnitKind::kHitBuffer, seen);
     // A hit finds its place in the buffer step by step, and the next one when it is there.
-    const Cycle in_turn = seen + units[UnitKind::kHitBuffer].chain(starts[UnitKind::kHitBuffer]);
-    return std::max({boxed, buffered, in_turn});
+    UnitBank& buffers = units[UnitKind::kHitBuffer];
+    const std::uint64_t steps = starts[UnitKind::kHitBuffer];
+    const UnitBank::Reservation buffered = buffers.reserve_beside(seen, steps);
+    const Cycle in_turn = seen + buffers.chain(steps);
+    if (in_turn > buffered.last) overlap.expect(buffered.first - buffers.latency(), in_turn);
+    return std::max({boxed, buffered.last, in_turn});
   }
 };
 

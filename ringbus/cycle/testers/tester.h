@@ -77,7 +77,7 @@ class Tester {
     for (const UnitKindRow& row : kUnitKinds)
       passes_[row.kind] += row.stage == Stage::kAnyHit ? lookups(counts) : passes_of(row.kind, counts);
     passes_[UnitKind::kTransform] += inversion_passes(counts);
-    distributor_->test(at, slots, counts, shape_bytes, decided);
+    distributor_->test(at, slots, counts, shape_bytes, overlap_, decided);
   }
   Distributor* distributor() { return distributor_ ? &*distributor_ : nullptr; }
   const Distributor* distributor() const { return distributor_ ? &*distributor_ : nullptr; }
@@ -91,7 +91,7 @@ class Tester {
         vectors[row.kind] = starts(row.kind, ray.passes(row.kind), {1});
     // Neither the decoding of a block nor the steps of a ray's buffer are spread over lanes.
     for (const UnitKind kind : {UnitKind::kDecoder, UnitKind::kHitBuffer}) vectors[kind] = ray.tests[kind];
-    return stages_.through(banks_, at, vectors);
+    return stages_.through(banks_, at, vectors, overlap_);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
   /// The end of the inversion of a matrix, which takes so many passes.
@@ -273,7 +273,7 @@ class Tester {
     for (const UnitKindRow& row : kUnitKinds) {
       if (row.stage != Stage::kPrimitive || counts.*row.tests == 0) continue;
       UnitBank::Reservation own = tested(banks_[row.kind], moved, starts(row.kind, counts, of));
-      own.last = std::max(own.last, moved.last + program_time(row.kind, counts));
+      last_not_before(moved.last + program_time(row.kind, counts), banks_[row.kind], own);
       met = {std::max(met.first, own.first), std::max(met.last, own.last)};
     }
     const UnitBank::Reservation known =
@@ -284,7 +284,15 @@ class Tester {
     // Steps of a ray go one after another. The mean is taken for the ray that comes first.
     const Cycle in_turn =
         seen.first + buffers.chain(ceil_div(counts.buffer_steps, std::max<std::uint64_t>(1, of.rays)));
-    return std::max(tested(buffers, seen, starts(UnitKind::kHitBuffer, counts, of)).last, in_turn);
+    UnitBank::Reservation buffered = tested(buffers, seen, starts(UnitKind::kHitBuffer, counts, of));
+    last_not_before(in_turn, buffers, buffered);
+    return buffered.last;
+  }
+  /// Answers of the bank that come one after another end no earlier than `until`.
+  void last_not_before(Cycle until, const UnitBank& bank, UnitBank::Reservation& own) {
+    if (until <= own.last) return;
+    overlap_.expect(own.first - bank.latency(), until);
+    own.last = until;
   }
   /// The least time until the answer to a program of the last ray that comes: the mean of the programs is taken for it.
   Cycle program_time(UnitKind kind, const IntersectionCounts& counts) const {

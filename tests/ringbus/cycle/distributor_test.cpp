@@ -168,7 +168,8 @@ TEST(Distributor, DividesNoProgramAmongTesters) {
     counts.programs = programs;
     counts.program_cycles = cycles;
     std::vector<Cycle> out;
-    Distributor(TestersConfig{}, RayStages{}, LinkConfig{}).test(10, slots, counts, 64, out);
+    BankOverlap overlap(0);
+    Distributor(TestersConfig{}, RayStages{}, LinkConfig{}).test(10, slots, counts, 64, overlap, out);
     return out;
   };
   EXPECT_EQ(decided(1, 100).front(), decided(0, 0).front() + 99);
@@ -203,10 +204,11 @@ TEST(Distributor, AgreesWithAMachinePlayedCycleByCycle) {
       packets.push_back(std::move(packet));
     }
     Distributor distributor(config, {}, link);
+    BankOverlap overlap(0);
     const std::vector<std::vector<Cycle>> played = PlayedDistributor(config, link, packets).play();
     for (std::size_t p = 0; p < packets.size(); ++p) {
       std::vector<Cycle> decided;
-      distributor.test(packets[p].at, packets[p].slots, packets[p].counts, packets[p].shape_bytes, decided);
+      distributor.test(packets[p].at, packets[p].slots, packets[p].counts, packets[p].shape_bytes, overlap, decided);
       ASSERT_EQ(decided, played[p]) << "machine " << machine << " packet " << p;
     }
     waited += distributor.counts().queue_full;
