@@ -18,6 +18,10 @@ namespace {
 
 constexpr double kWord = 8;  // bytes of an access
 constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
+/// The reciprocals of a ray's direction stand in its record, as AMD's instructions take them with the ray (RDNA 2
+/// instruction set, 2020, IMAGE_BVH_INTERSECT_RAY): in place of tmax, which is the hit's distance while the ray is in
+/// flight, and of what the tag says beside its flags, which shading knows by the ray's ID. So a visit divides nothing.
+constexpr double kDirectionParts = 3;
 
 /// The mean of all resources that have any, as their accesses are counted together.
 template <class Of>
@@ -71,6 +75,7 @@ class EnergyAccount::Sum {
     }
     for (std::size_t i = 0; i < e_.row_bytes.size(); ++i) message(a_.rows_[i], static_cast<double>(e_.row_bytes[i]));
     parts_[EnergyPart::kShades].add(static_cast<double>(e_.shaded), pj(Cost::kShade));
+    divisions(static_cast<double>(e_.shaded));  // each ray that is shaded has been made once
     parts_[EnergyPart::kProducts].add(static_cast<double>(e_.products), pj(Cost::kProduct));
     parts_[EnergyPart::kLookups].add(static_cast<double>(e_.lookups), pj(Cost::kLookup));
     parts_[EnergyPart::kActivations].add(memory_times_ * static_cast<double>(e_.activations),
@@ -92,24 +97,31 @@ class EnergyAccount::Sum {
       const std::uint64_t by_silhouette = row.kind == UnitKind::kBundle ? of.tests.silhouettes : 0;
       parts_.units[row.kind].add(static_cast<double>(of.tests.*row.tests - by_program - by_silhouette),
                                  pj(energy_of(row.kind)));
+      parts_.units[row.kind].events += static_cast<double>(by_program);
     }
     parts_.units[UnitKind::kBundle].add(static_cast<double>(of.tests.silhouettes), pj(Cost::kSilhouetteTest));
-    parts_.units[UnitKind::kBundle].add(static_cast<double>(of.tests.edges), pj(Cost::kEdgeTest));
+    parts_.units[UnitKind::kBundle].add_work(static_cast<double>(of.tests.edges), pj(Cost::kEdgeTest));
+    divisions(static_cast<double>(of.tests.transforms));
     if (of.tests.programs > 0) instructions(of.tests);
     access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
     access(EnergyPart::kRayStore, static_cast<double>(of.buffer_bytes), a_.rays_kib_);
     access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(of.packet_rays), a_.collections_kib_);
     access(EnergyPart::kShapeBuffers, kPlaceBytes * static_cast<double>(of.shape_reads), a_.buffer_kib_);
     if (of.prefetch_votes > 0)
-      parts_[EnergyPart::kShapeBuffers].add(static_cast<double>(of.prefetch_votes), pj(Cost::kPrefetchVote));
+      parts_[EnergyPart::kShapeBuffers].add_work(static_cast<double>(of.prefetch_votes), pj(Cost::kPrefetchVote));
     if (of.stack_bytes > 0)
       access(EnergyPart::kStacks, static_cast<double>(of.stack_bytes),
              of.warps ? register_kib(a_.c_, number) : a_.rays_kib_);
   }
 
+  /// Reciprocals of the directions of so many rays: a box test multiplies by them.
+  void divisions(double rays) {
+    parts_.units[UnitKind::kReciprocal].add(kDirectionParts * rays, pj(Cost::kReciprocal));
+  }
+
   void instructions(const IntersectionCounts& counts) {
     const auto add = [&](std::uint64_t executed, Cost each) {
-      parts_.units[UnitKind::kProcedural].add(static_cast<double>(executed), pj(each));
+      parts_.units[UnitKind::kProcedural].add_work(static_cast<double>(executed), pj(each));
     };
     add(counts.simple_instructions, Cost::kSimpleInstruction);
     add(counts.product_instructions, Cost::kProductInstruction);

@@ -371,9 +371,9 @@ std::optional<std::string_view> units_unused(const C& c, const S& s, std::string
       std::find_if(kCostTable.begin(), kCostTable.end(), [&](const CostRow& of) { return of.key == name; });
   if (cost && row != kCostTable.end() && !kProfile.holds(c, s)) return kProfile.otherwise;
   for (const UnitKindRow& unit : kUnitKinds)
-    if (const Condition* needed = condition_of(unit.kind); unit.key == name && needed != nullptr &&
-                                                           !needed->holds(c, s) &&
-                                                           !(lies_in(key, "energy.bundle") && has_bundles(c)))
+    if (const Condition* needed = condition_of(unit.kind);
+        unit.key == name && needed != nullptr && !needed->holds(c, s) &&
+        !(lies_in(key, "energy.bundle") && has_bundles(c)) && !lies_in(key, "energy.reciprocal"))  // of each ray
       return needed->otherwise;
   return std::nullopt;
 }

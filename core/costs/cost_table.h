@@ -83,7 +83,7 @@ inline constexpr auto kCostTable = [] {
        kE,
        "reciprocal",
        "pJ",
-       "A division for a bundle.",
+       "A division: for a bundle, and of the three reciprocals of a ray.",
        {18.4f, kAssumed, "four products and sums, as of two steps of Newton; Horowitz, ISSCC 2014"},
        {6.84f, kAssumed, "four products and sums, as of two steps of Newton; Jouppi et al., ISCA 2021, Table 2"}},
       {Cost::kHop,

@@ -10,7 +10,7 @@ struct BundleCounts {
   std::uint64_t lane_rays = 0, split_rays = 0;
   std::uint64_t visits = 0, visit_rays = 0, touched = 0, taken_apart = 0;
   std::uint64_t formed = 0, formed_rays = 0, loaded = 0, loaded_rays = 0;
-  std::uint64_t edges = 0, regrouped = 0, returned = 0;
+  std::uint64_t regrouped = 0, returned = 0;
   std::uint64_t leaf_tests = 0, leaf_misses = 0, leaf_tests_spared = 0;
 
   static constexpr auto counters() {
@@ -35,7 +35,6 @@ struct BundleCounts {
         Counter{"loaded", &C::loaded, "bundles", "bundles formed of new rays; the others were formed of split ones",
                 Shown::kNever},
         Counter{"loaded_rays", &C::loaded_rays, "rays", "rays of the bundles formed of new rays", Shown::kNever},
-        Counter{"edges", &C::edges, "edges", "edges of silhouettes that bundles were tested against"},
         Counter{"regrouped", &C::regrouped, "rays",
                 "rays that left a bundle and passed the builder again, with lifetime: reformed or another split than "
                 "tester"},

@@ -65,8 +65,10 @@ struct EnergyOf {
   double events = 0, joules = 0, rays = 0;
   void add(double more, double pj_each) {
     events += more;
-    joules += more * pj_each * 1e-12;
+    add_work(more, pj_each);
   }
+  /// Joules of work within events that are counted already.
+  void add_work(double times, double pj_each) { joules += times * pj_each * 1e-12; }
 };
 
 template <class V>
@@ -102,8 +104,12 @@ struct EnergyParts {
 template <class V>
 void describe(V& v, const EnergyParts& r) {
   for (const UnitKindRow& row : kUnitKinds)
-    if (row.kind == UnitKind::kMicromap || row.kind == UnitKind::kReciprocal)  // older reports have none
+    if (row.kind == UnitKind::kMicromap)  // older reports have none
       v.section_if(r.units[row.kind].events > 0, row.work, r.units[row.kind], row.meaning);
+    else if (row.kind == UnitKind::kReciprocal)  // likewise; and rays divide where there are no such units
+      v.section_if(r.units[row.kind].events > 0, row.work, r.units[row.kind],
+                   "divisions for bundles (tests.reciprocals), and three for the direction of each ray that is made or "
+                   "brought to model space");
     else
       v.section(row.work, r.units[row.kind], row.meaning);
   constexpr auto kOwnCaches = static_cast<std::size_t>(EnergyPart::kL1);

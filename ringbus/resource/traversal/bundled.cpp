@@ -151,13 +151,13 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
   const bool stays_out = enters && !inside;
   const accel::BundleRecord& bundle = inside ? *inside : store.bundle(local.slot);
   accel::BundleAnswer answer;
-  const bool untested = stays_out || split_.too_wide(bundle, node);
+  // Without a box of its own a node asks for no bounds, and so for no division.
+  const bool untested = boxes == 0 || stays_out || split_.too_wide(bundle, node);
   if (untested) {
     answer.undecided = static_cast<std::uint8_t>(boxes);
   } else {
     answer = accel::test_bundle(context_.accel, node, boxes, bundle, config_, counts);
     add_passes(answer, outcome.bundle_passes);
-    counts_.edges += answer.edges;
     if (answer.silhouettes)
       outcome.bundle_passes.divided_after += static_cast<std::uint32_t>(std::popcount(answer.all));
     else

@@ -52,8 +52,15 @@ TEST_F(BundlePrices, AreThoseOfTheOperationsOfTheirForm) {
                 1);
   }
   for (const Json* r : {&interval, &serial, &parallel}) {
-    EXPECT_NEAR(pj(*r, "reciprocals"), 18.4 * tests(*r, "reciprocals"), 1);
-    // What has joules takes a cycle of a unit too.
+    // Rays are made with three reciprocals each.
+    const double divisions = tests(*r, "reciprocals") + 3 * (*r)["shading"]["shaded"].get<double>();
+    EXPECT_EQ(tests(*r, "transforms"), 0);
+    EXPECT_NEAR(pj(*r, "reciprocals"), 18.4 * divisions, 1);
+    EXPECT_EQ((*r)["energy"]["parts"]["reciprocals"]["events"], divisions);
+    // A test is one event, however many edges it takes.
+    EXPECT_EQ((*r)["energy"]["parts"]["bundle_tests"]["events"], tests(*r, "bundle"));
+    EXPECT_FALSE((*r)["tests"]["bundles"]["sum"].contains("edges")) << "they stand in tests.edges";
+    // What a bundle divides takes a cycle of a unit too.
     EXPECT_EQ(static_cast<double>(busy(*r, "reciprocal")), tests(*r, "reciprocals"));
   }
   // A test by intervals is a pass, and so is one by a silhouette whose edges are tested at once.
@@ -84,6 +91,23 @@ TEST_F(BundlePrices, BlocksThatDoMoreAreLarger) {
   // Four box units a resource, each as large as the unit that is left out.
   EXPECT_NEAR(with(parallel, "shared") - separate, 2 * (4 * (unit - box) - unit), 1e-5);
   EXPECT_NEAR(with(serial, "separate") - with(serial, "shared"), 2 * (0.063 + 0.042), 1e-5);
+}
+
+// One node holds all of its leaves: bundles are tested against no box there, and divide only for primitives.
+TEST_F(BundlePrices, WithoutABoxNothingIsDivided) {
+  const char* const kOneNode =
+      "scene: {builtin: terrain, triangles: 16}\nimage: {width: 16, height: 16, samples: 1, max_depth: 1}\n"
+      "bvh: {width: 8, leaf_triangles: 4, mixed_triangles: 4}\ntopology: {resources: 2}\npackets: {rays: 32}\n"
+      "bundles: {size: 8}\n";
+  for (const char* const form : {"bundles.form=interval", "bundles.form=silhouette"}) {
+    const Json rays = report(kOneNode, {form}), primitives = report(kOneNode, {form, "bundles.leaf=primitives"});
+    ASSERT_EQ(rays["structure"]["inner_nodes"], 1);
+    EXPECT_EQ(tests(rays, "bundle"), 0);
+    EXPECT_EQ(tests(rays, "reciprocals"), 0) << form;
+    const double triangles = rays["structure"]["primitives"], bundles = tests(primitives, "bundle") / triangles;
+    EXPECT_GT(bundles, 0);
+    EXPECT_EQ(tests(primitives, "reciprocals"), 6 * bundles) << form;
+  }
 }
 
 // A slow divider holds intervals up, and silhouettes, which divide less and behind their tests, by less.

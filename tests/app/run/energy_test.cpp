@@ -87,6 +87,8 @@ double expected_pj(const Json& r, double link_lengths) {
   pj += messages * (0.45 + 0.96 * 2 * std::sqrt(8) / 2);
   pj += 244 * bytes_over(r, "DRAM's data wires");
   pj += 736 * r["shading"]["shaded"].get<double>();
+  // The reciprocals of a ray's direction, when it is made and when it is brought to model space.
+  pj += 3 * 18.4 * (r["shading"]["shaded"].get<double>() + count("transforms"));
   pj += 4.6 * r["shading"]["products"].get<double>() + 80 * r["shading"]["lookups"].get<double>();
   return pj;
 }
