@@ -19,21 +19,6 @@ namespace carousel::report {
 
 namespace {
 
-/// Least, mean and greatest over the resources: the balance of the machine without a line for each resource.
-template <class Value>
-void spread_line(Table& table, std::string_view name, std::span<const Resource> resources, const Value& value) {
-  if (resources.empty()) return;
-  std::uint64_t least = value(resources.front()), most = least, sum = 0;
-  for (const Resource& resource : resources) {
-    least = std::min(least, value(resource));
-    most = std::max(most, value(resource));
-    sum += value(resource);
-  }
-  const double mean = ratio(sum, resources.size());
-  table.line("", "{:<18} {:>14} {:>14} {:>14}   {:.2f}", name, grouped(least),
-             grouped(static_cast<std::uint64_t>(mean + 0.5)), grouped(most), ratio(double(most), mean));
-}
-
 // A table is read at a glance: more lines than these are left to the files.
 constexpr std::size_t kRankLines = 8, kRankLinkLines = 12;
 

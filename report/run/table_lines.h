@@ -1,12 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <iterator>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
+
+#include "report/text/number_text.h"
+#include "report/text/ratio.h"
 
 namespace carousel::report {
 
@@ -48,5 +53,20 @@ class Items {
  private:
   std::string text_;
 };
+
+/// Least, mean and greatest value of some parts: their balance without a line for each. No parts have no line.
+template <class Part, class Value>
+void spread_line(Table& table, std::string_view name, std::span<const Part> parts, const Value& value) {
+  if (parts.empty()) return;
+  std::uint64_t least = value(parts.front()), most = least, sum = 0;
+  for (const Part& part : parts) {
+    least = std::min(least, value(part));
+    most = std::max(most, value(part));
+    sum += value(part);
+  }
+  const double mean = ratio(sum, parts.size());
+  table.line("", "{:<18} {:>14} {:>14} {:>14}   {:.2f}", name, grouped(least),
+             grouped(static_cast<std::uint64_t>(mean + 0.5)), grouped(most), ratio(double(most), mean));
+}
 
 }  // namespace carousel::report
