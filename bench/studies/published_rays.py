@@ -97,7 +97,7 @@ def micromaps(program, folder):
             calls = [report["tests"].get("any_hit", {"count": 0})["count"] for report in reports]
             all_calls = [report["tests"]["any_hit"]["count"] for report in first]
             yield [f"{triangles:,}", name, ", ".join(f"{count:,}" for count in calls),
-                   "" if reports is first else ", ".join(f"{100 * (1 - a / b):.0f} %" for a, b in zip(calls, all_calls)),
+                   "" if reports is first else ", ".join(f"{round(100 * (1 - a / b))} %" for a, b in zip(calls, all_calls)),
                    ", ".join(f"{a['engine']['cycles'] / b['engine']['cycles']:.2f}" for a, b in zip(first, reports)),
                    f"{reports[0]['structure']['bytes'] / 1000:,.0f}"]
 
