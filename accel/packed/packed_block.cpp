@@ -25,6 +25,16 @@ unsigned bits_for(std::uint32_t most) {
   return static_cast<unsigned>(std::bit_width(most));
 }
 
+/// Bits of a number in two's complement, at least one.
+unsigned signed_bits_for(std::int64_t value) {
+  return bits_for(static_cast<std::uint32_t>(value < 0 ? ~value : value)) + 1;
+}
+
+/// The number of `width` bits that `low` has there.
+std::int32_t extended(std::uint32_t low, unsigned width) {
+  return static_cast<std::int32_t>(low << (32 - width)) >> (32 - width);
+}
+
 /// Vertices in the order in which triangles first have them.
 struct Indexed {
   std::vector<Coordinates> vertices;
@@ -113,6 +123,34 @@ Step step_between(const VertexNumbers& before, const VertexNumbers& next) {
   return {};
 }
 
+/// Primitive numbers of neighbours in a strip often differ by little, so a number is an offset from the smallest one of
+/// the block or, where that is shorter, a difference from the number before.
+struct PrimitiveWidths {
+  unsigned offset = 0, difference = 0;  ///< bits; difference 0: there are none, and no triangle says which it has
+
+  bool has_difference(std::int64_t from_last) const {
+    return difference > 0 && signed_bits_for(from_last) <= difference;
+  }
+};
+
+std::int64_t from_last(std::span<const PackedTriangle> triangles, std::size_t i) {
+  return std::int64_t{triangles[i].primitive & kPrimitiveMask} - (triangles[i - 1].primitive & kPrimitiveMask);
+}
+
+/// Those with which all numbers have the fewest bits.
+PrimitiveWidths widths_of(std::span<const PackedTriangle> triangles, unsigned offset) {
+  PrimitiveWidths best{offset, 0};
+  std::size_t fewest = triangles.size() * offset;
+  for (unsigned difference = 1; difference < offset; ++difference) {
+    const PrimitiveWidths widths{offset, difference};
+    std::size_t bits = offset;
+    for (std::size_t i = 1; i < triangles.size(); ++i)
+      bits += 1 + (widths.has_difference(from_last(triangles, i)) ? difference : offset);
+    if (bits < fewest) best = widths, fewest = bits;
+  }
+  return best;
+}
+
 void put_primitives(BitWriter& out, std::span<const PackedTriangle> triangles) {
   std::uint32_t least = kPrimitiveMask, most = 0, not_opaque = 0;
   for (const PackedTriangle& triangle : triangles) {
@@ -123,13 +161,35 @@ void put_primitives(BitWriter& out, std::span<const PackedTriangle> triangles) {
   const std::uint32_t opacity = not_opaque == 0                  ? kAllOpaque
                                 : not_opaque == triangles.size() ? kNoneOpaque
                                                                  : kSomeOpaque;
-  const unsigned width = bits_for(most - least);
-  out.put(least, kPrimitiveBits);
-  out.put(width, kWidthBits);
+  const PrimitiveWidths widths = widths_of(triangles, bits_for(most - least));
+  out.put(bits_for(least), kWidthBits);
+  out.put(least, bits_for(least));
+  out.put(widths.offset, kWidthBits);
+  out.put(widths.difference, kWidthBits);
   out.put(opacity, kOpacityBits);
-  for (const PackedTriangle& triangle : triangles) {
-    out.put((triangle.primitive & kPrimitiveMask) - least, width);
-    if (opacity == kSomeOpaque) out.put(triangle.primitive >> kPrimitiveBits, 1);
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    const bool near = i > 0 && widths.has_difference(from_last(triangles, i));
+    if (i > 0 && widths.difference > 0) out.put(near, 1);
+    if (near)
+      out.put(static_cast<std::uint32_t>(from_last(triangles, i)), widths.difference);
+    else
+      out.put((triangles[i].primitive & kPrimitiveMask) - least, widths.offset);
+    if (opacity == kSomeOpaque) out.put(triangles[i].primitive >> kPrimitiveBits, 1);
+  }
+}
+
+void take_primitives(BitReader& in, std::span<PackedTriangle> triangles) {
+  const std::uint32_t least = in.take(in.take(kWidthBits));
+  const PrimitiveWidths widths{in.take(kWidthBits), in.take(kWidthBits)};
+  const std::uint32_t opacity = in.take(kOpacityBits);
+  std::uint32_t last = 0;
+  for (std::size_t i = 0; i < triangles.size(); ++i) {
+    if (i > 0 && widths.difference > 0 && in.take(1) == 1)
+      last += static_cast<std::uint32_t>(extended(in.take(widths.difference), widths.difference));
+    else
+      last = least + in.take(widths.offset);
+    triangles[i].primitive = last;
+    if (opacity == kNoneOpaque || (opacity == kSomeOpaque && in.take(1) == 1)) triangles[i].primitive |= kNonOpaqueBit;
   }
 }
 
@@ -190,7 +250,9 @@ std::optional<PackedBlock> on_grid_block(std::span<const PackedTriangle> triangl
   out.put(static_cast<std::uint32_t>(mesh.vertices.size() - 1), kCountBits);
   out.put(static_cast<std::uint32_t>(grid->exponent - kLeastExponent), kExponentBits);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    out.put(static_cast<std::uint32_t>(grid->anchor[axis]), kAnchorBits);
+    const unsigned width = signed_bits_for(grid->anchor[axis]);
+    out.put(width, kWidthBits);
+    out.put(static_cast<std::uint32_t>(grid->anchor[axis]), width);
     out.put(bits_for(grid->most[axis]), kWidthBits);
   }
   for (const auto& vertex : grid->at)
@@ -221,8 +283,8 @@ std::vector<PackedTriangle> decode_block(const PackedBits& bits) {
   std::array<std::int32_t, 3> anchor{};
   std::array<unsigned, 3> width{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::uint32_t low = in.take(kAnchorBits);
-    anchor[axis] = static_cast<std::int32_t>(low << (32 - kAnchorBits)) >> (32 - kAnchorBits);
+    const unsigned anchor_width = in.take(kWidthBits);
+    anchor[axis] = extended(in.take(anchor_width), anchor_width);
     width[axis] = in.take(kWidthBits);
   }
   for (Coordinates& vertex : vertices)
@@ -230,13 +292,7 @@ std::vector<PackedTriangle> decode_block(const PackedBits& bits) {
       const std::int64_t at = std::int64_t{anchor[axis]} + in.take(width[axis]);
       vertex[axis] = std::bit_cast<std::uint32_t>(static_cast<float>(std::ldexp(static_cast<double>(at), exponent)));
     }
-  const std::uint32_t least = in.take(kPrimitiveBits);
-  const unsigned primitive_width = in.take(kWidthBits);
-  const std::uint32_t opacity = in.take(kOpacityBits);
-  for (PackedTriangle& triangle : out) {
-    triangle.primitive = least + in.take(primitive_width);
-    if (opacity == kNoneOpaque || (opacity == kSomeOpaque && in.take(1) == 1)) triangle.primitive |= kNonOpaqueBit;
-  }
+  take_primitives(in, out);
   const unsigned name = bits_for(static_cast<std::uint32_t>(vertices.size() - 1));
   std::uint32_t seen = 0;
   const auto take_vertex = [&] { return in.take(1) == 1 ? seen++ : in.take(name); };

@@ -22,13 +22,13 @@ struct PackedTriangle {
 inline constexpr std::uint32_t kMostPackedTriangles = 64, kMostPackedVertices = 64, kMostRawTriangles = 3;
 
 /// A block of 128 bytes with up to 64 vertices and 64 triangles. It stands on a grid with steps of a power of two,
-/// the largest of which all coordinates are multiples. An anchor an axis has 26 bits, and each vertex its offset from
-/// it in as many bits as the largest offset of that axis needs. Triangles follow one another as in a strip: each says
-/// which edge of the one before it it has, how its vertices are rotated, and if its own vertex is the next one or an
-/// earlier one, which it names. Primitive numbers are a smallest one and offsets. Blocks of this size and purpose, with
-/// another encoding and triangles that are rotated for it, are in J. Barczak, C. Benthin, D. McAllister,
-/// DGF: A Dense, Hardware-Friendly Geometry Format for Lossily Compressing Meshlets with Arbitrary Topologies, HPG
-/// 2024.
+/// the largest of which all coordinates are multiples. An anchor an axis has up to 26 bits, and each vertex its offset
+/// from it in as many bits as the largest offset of that axis needs. Triangles follow one another as in a strip: each
+/// says which edge of the one before it it has, how its vertices are rotated, and if its own vertex is the next one or
+/// an earlier one, which it names. Primitive numbers are a smallest one and offsets, or differences from the number
+/// before. docs/reference/triangle-blocks.md has the format, bit by bit. Blocks of this size and purpose, with another
+/// encoding and triangles that are rotated for it, are in J. Barczak, C. Benthin, D. McAllister, DGF: A Dense,
+/// Hardware-Friendly Geometry Format for Lossily Compressing Meshlets with Arbitrary Topologies, HPG 2024.
 ///
 /// Triangles without such a grid, with coordinates too far apart or not finite, are raw: three to a block, as floats.
 /// Nothing is lost in either: decode_block() has the same bits, in the same order.

@@ -160,6 +160,21 @@ TEST(PackedLeaves, HoldTheTrianglesOfTheBuiltInScenes) {
       }
 }
 
+/// The goal of blocks, on scenes of bench/studies/compressed_blocks. The smaller one of spheres has up to 8.3.
+TEST(PackedLeaves, HaveEightBytesATriangle) {
+  for (const auto& [which, triangles] :
+       {std::pair{BuiltinScene::kTerrain, 20000}, std::pair{BuiltinScene::kSpheres, 80000}})
+    for (const std::int64_t leaf : {4, 16}) {
+      scene::Scene scene = small_builtin(which, triangles);
+      scene::quantise(scene, 16);
+      BvhConfig bvh;
+      bvh.leaves = BvhConfig::Leaves::kBlocks;
+      bvh.leaf_triangles = leaf;
+      const PackedLeafCounts counts = build(scene, bvh, *make_sequential_executor()).packed->counts();
+      EXPECT_LE(static_cast<double>(counts.bytes), 8.0 * static_cast<double>(counts.triangles)) << leaf;
+    }
+}
+
 /// A leaf that no block has room for has several, in which the next leaf has no part.
 TEST(PackedLeaves, GiveALargeLeafBlocksOfItsOwn) {
   std::mt19937 random(3);

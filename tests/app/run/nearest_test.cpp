@@ -1,208 +1,23 @@
 // Rays that look for several nearest hits (rays.query.nearest), on both engines, as a user asks for them.
-#include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <random>
+#include <cstdint>
 #include <sstream>
 #include <string>
-#include <tuple>
+#include <utility>
 #include <vector>
 
-#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "report/csv/ray_csv.h"
-#include "scene/builtin/builtin.h"
-#include "tests/accel/traverse/brute_force.h"
-#include "tests/app/support/program.h"
-#include "tests/scene/gltf/gltf_builder.h"
-#include "tests/support/random_runs.h"
+#include "tests/app/support/hits_of_rays.h"
 
 namespace carousel::nearest_test {
 namespace {
 
 using Json = nlohmann::json;
 
-/// Triangles that overlap each other, so that rays have a dozen hits and more.
-scene::GltfBuilder soup() {
-  constexpr int kTriangles = 1000;
-  constexpr float kSize = 0.4f;
-  std::mt19937 random(3);
-  const auto unit = [&] { return static_cast<float>(random() >> 8) * 0x1p-24f; };
-  std::vector<float> positions;
-  for (int i = 0; i < kTriangles; ++i) {
-    const Vec3 middle{unit(), unit(), unit()};
-    for (int corner = 0; corner < 3; ++corner)
-      for (int axis = 0; axis < 3; ++axis) positions.push_back(middle[axis] + kSize * (unit() - 0.5f));
-  }
-  scene::GltfBuilder out;
-  out.mesh({{"POSITION", out.floats(positions, "VEC3", 3)}});
-  return out;
-}
-
-struct SceneOfHits {
-  std::string text;
-  scene::Scene scene;
-};
-
-scene::Scene builtin(BuiltinScene which) {
-  SceneConfig config;
-  config.builtin = which;
-  config.triangles = 300;
-  config.instances = 60;
-  config.procedural = which == BuiltinScene::kSpheres;
-  return scene::make_builtin(config);
-}
-
-const std::vector<SceneOfHits>& scenes() {
-  static const std::vector<SceneOfHits> all{
-      {"{file: soup.gltf}", soup().load()},
-      {"{builtin: instances, triangles: 300, instances: 60}", builtin(BuiltinScene::kInstances)},
-      {"{builtin: spheres, triangles: 300, procedural: true}", builtin(BuiltinScene::kSpheres)},
-      {"{builtin: terrain, triangles: 300}", builtin(BuiltinScene::kTerrain)}};
-  return all;
-}
-
-/// Rays through the middle of a scene, along its ground in one of two, so that many have several hits; some begin
-/// within or end early, and some are shadow rays.
-std::string rays_through(const Aabb& bounds, int count, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
-  const auto within = [&](double from, double to) { return from + (to - from) * (random() >> 32) / 4294967296.0; };
-  std::string out = "ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax\n";
-  for (int i = 0; i < count; ++i) {
-    double from[3], way[3];
-    for (int axis = 0; axis < 3; ++axis) {
-      const double half = (axis == 1 && i % 2 == 0 ? 0.1 : 0.45) * bounds.extent()[axis];
-      const double middle = bounds.centre()[axis];
-      from[axis] = within(middle - half, middle + half);
-      way[axis] = within(middle - half, middle + half) - from[axis];
-      if (i % 4 != 0) from[axis] -= 3 * way[axis];
-    }
-    out += fmt::format("{},{},{},{},{},{},{},{},{}\n", i, i % 11 == 0 ? "shadow" : "camera", from[0], from[1], from[2],
-                       way[0], way[1], way[2], i % 7 == 0 ? "0.25,3.6" : "0,inf");
-  }
-  return out;
-}
-
-std::string csv_of(const std::filesystem::path& path, const std::vector<report::HitRow>& rows) {
-  {
-    AtomicFile file(path);
-    report::write_hits_csv(file, rows, true);
-    file.commit();
-  }
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
-/// By ray: all its hits, sorted, from every primitive tested in turn; of a shadow ray some hit.
-std::vector<std::vector<Hit>> every_hit(const scene::Scene& scene, const RayBatch& rays) {
-  std::vector<std::vector<Hit>> out;
-  for (const RayRequest& ray : rays) {
-    std::vector<Hit>& hits = out.emplace_back(accel::brute_force_all(scene, ray));
-    std::sort(hits.begin(), hits.end(), [](const Hit& a, const Hit& b) {
-      return std::tuple(a.t, a.instance, a.primitive, a.u, a.v) < std::tuple(b.t, b.instance, b.primitive, b.u, b.v);
-    });
-  }
-  return out;
-}
-
-/// hits.csv as it has to be with the `k` nearest hits of each.
-std::string expected(const Program& program, const RayBatch& rays, const std::vector<std::vector<Hit>>& all,
-                     std::size_t k) {
-  std::vector<report::HitRow> rows;
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    RayRequest ray = rays[i];
-    const bool shadow = ray.tag.kind == RayKind::kShadow;
-    if (!shadow) ray.tag.flags |= kRayAll;
-    std::vector<Hit> hits(all[i].begin(), all[i].begin() + std::ptrdiff_t(std::min(shadow ? 1 : k, all[i].size())));
-    if (hits.empty()) hits.emplace_back();
-    for (std::uint32_t rank = 0; rank < hits.size(); ++rank)
-      rows.push_back({ray.tag.path, rank, {ray.ray, hits[rank], ray.tag}});
-  }
-  return csv_of(program.folder() / "expected.csv", rows);
-}
-
-Outcome run(const Program& program, const std::string& sets) {
-  std::vector<std::string> words{"run", "rays.yaml", "--hits", "--out", "out", "--force", "--quiet", "--no-html"};
-  std::istringstream in(sets);
-  for (std::string set; in >> set;) words.insert(words.end(), {"--set", set});
-  return program.run(words);
-}
-
 Json report_of(const Program& program) {
   return Json::parse(program.read("out/report.json"));
-}
-
-struct Machine {
-  std::string sets;
-  bool rounds;  ///< it has them
-};
-
-const std::vector<Machine>& machines() {
-  static const std::vector<Machine> all{
-      {"engine.kind=cycle topology.shape=independent topology.resources=2", true},
-      {"engine.kind=cycle topology.resources=3 collections.traversal=ordered packets.rays=4", true},
-      {"engine.kind=native engine.threads=2 topology.resources=3 collections.traversal=ordered", true},
-      {"engine.kind=cycle topology.resources=3 collections.traversal=ordered bvh.builder=kd bvh.duplicates=2", true},
-      {"engine.kind=cycle topology.resources=2 collections.traversal=ordered collections.key=block bvh.width=2", true},
-      {"engine.kind=cycle engine.threads=2 topology.resources=5 bvh.storage=quantised", false},
-      {"engine.kind=cycle topology.shape=bidirectional topology.resources=4 packets.shapes=single", false},
-      {"engine.kind=cycle collections.traversal=treelet bvh.treelet_triangles=16 bvh.builder=spatial", false},
-      {"engine.kind=cycle topology.resources=3 bvh.treelets.bytes=1024", false},
-      {"engine.kind=cycle topology.shape=independent testers.simt.warp=8 testers.simt.idle_lanes=help", false},
-      {"engine.kind=native collections.traversal=treelet bvh.treelet_triangles=64 engine.simd=ssse3", false},
-  };
-  return all;
-}
-
-// Every machine writes the same file, which is that of every primitive tested in turn; machines with rounds in both
-// ways and with several sizes of buffers.
-TEST(Nearest, EqualsBruteForceOnEveryMachine) {
-  const int count = scaled(120, 60);
-  const std::size_t one_in = run_effort() > 2 ? 1 : 3;
-  std::size_t turn = run_seed();
-  for (const SceneOfHits& of : scenes()) {
-    Program program;
-    const scene::Scene& scene = of.scene;
-    program.write("soup.gltf", soup().text());
-    program.write("rays.csv", rays_through(scene.bounds(), count, run_seed()));
-    program.write("rays.yaml", "scene: " + of.text + "\nworkload: {rays_from: rays.csv}\nverify: reference\n");
-    const RayBatch rays = report::read_rays_csv(program.folder() / "rays.csv");
-    const std::vector<std::vector<Hit>> all = every_hit(scene, rays);
-    std::size_t most = 0;
-    for (const std::vector<Hit>& hits : all) most = std::max(most, hits.size());
-    ASSERT_GE(most, of.text.find("soup") == of.text.npos ? 1u : 14u) << of.text;
-    for (const std::size_t k : {1, 2, 7, 16, 64}) {
-      const std::string wanted = expected(program, rays, all, k);
-      std::string digest, nearest_digest;
-      for (const Machine& machine : machines()) {
-        // All machines with all scenes and numbers would take a minute: they take turns.
-        if (++turn % (machine.rounds ? 2 * one_in : 3 * one_in - 1) != 0) continue;
-        std::vector<std::string> ways{""};
-        if (machine.rounds && k > 1)
-          ways = {fmt::format(" rays.query.buffer={} rays.query.rounds=restart", 1 + turn % (k - 1)),
-                  fmt::format(" rays.query.buffer={} rays.query.rounds=resume", 1 + turn % (k - 1))};
-        for (const std::string& way : ways) {
-          const std::string sets = fmt::format("{} rays.query.nearest={}{}", machine.sets, k, way);
-          const Outcome outcome = run(program, sets);
-          ASSERT_EQ(outcome.status, 0) << sets << outcome.err;
-          ASSERT_EQ(program.read("out/hits.csv"), wanted) << of.text << ": " << sets;
-          const Json report = report_of(program);
-          EXPECT_EQ(report["verify"]["mismatches"], 0);
-          if (digest.empty()) {
-            digest = report["digest"]["hits"].get<std::string>();
-            nearest_digest = report["nearest"]["digest"].get<std::string>();
-          }
-          EXPECT_EQ(report["digest"]["hits"], digest) << sets;
-          EXPECT_EQ(report["nearest"]["digest"], nearest_digest) << sets;
-        }
-      }
-    }
-  }
-  std::printf("%d rays of each scene against every primitive\n", count);
 }
 
 // A machine whose rays are resumed visits at most half of the nodes that one does whose rays begin again, with 16 hits,
