@@ -99,13 +99,14 @@ def compare_blocks(facts, expected, rng):
     wrong = blocks_differ(facts, expected)
     if wrong:
         return wrong
+    on_grid = [bytes.fromhex(text) for text in facts["blocks"] if not packed_blocks.is_raw(bytes.fromhex(text))]
     for _ in range(12):  # a bit that is flipped among those that every block uses, and one of the grid
-        block = bytes.fromhex(rng.choice(facts["blocks"]))
+        block = rng.choice(on_grid)
         broken = (int.from_bytes(block, "little") ^ 1 << rng.randrange(7, 120)).to_bytes(128, "little")
         try:
             if packed_blocks.decoded(broken) == packed_blocks.decoded(block):
                 return f"a flipped bit in block {block.hex()} is not noticed"
-        except (IndexError, OverflowError):
+        except (IndexError, OverflowError, ValueError):  # widths and names that no block has
             pass
     return None
 
@@ -164,8 +165,9 @@ def compare_micromaps(maps, laid, four):
     # A card with an outline has unknown micro-triangles, and so no map of two states.
     if (maps["triangles"][3] > 0) != four or known < 0.8 * len(laid) * 4 ** maps["level"]:
         return f"too little is compared: {maps['triangles']} and {known} micro-triangles"
-    opposite = {0xffffffff: 0xfffffffe, 0xfffffffe: 0xffffffff}
-    broken = [{**maps, "entries": [opposite.get(entry, entry) for entry in maps["entries"]]}]
+    other = {0xffffffff: 0xfffffffe, 0xfffffffe: 0xffffffff, 0xfffffffd: 0xfffffffe}
+    misread = [other.get(entry, entry) for entry in maps["entries"]]
+    broken = [{**maps, "entries": misread}] if misread != maps["entries"] else []
     if four:
         broken.append({**maps, "states": [byte ^ (~byte >> 1 & 0x55) for byte in maps["states"]]})
         late = zip([0] + maps["states"], maps["states"])  # each state at the place of the one before
