@@ -9,12 +9,14 @@
 #include "core/system/error.h"
 #include "scene/builtin/builtin.h"
 #include "scene/gltf/import.h"
+#include "scene/import/gaussian_ply.h"
 #include "scene/import/import_file.h"
 #include "scene/load_sky.h"
 #include "scene/model/camera_pose.h"
 #include "scene/model/fitted_camera.h"
 #include "scene/model/key_light.h"
 #include "scene/model/quantise.h"
+#include "scene/place_gaussians.h"
 
 namespace carousel::scene {
 
@@ -50,8 +52,9 @@ Scene load_file(const SceneConfig& config, const std::filesystem::path& config_d
   const std::filesystem::path file = find_file("scene.file", "a scene file", config.file, config_dir);
   Scene scene;
   try {
-    scene = is_gltf(file) ? load_gltf(file, warn, images, pose, executor)
-                          : SceneImporter().load(file, warn, images, pose, executor);
+    scene = is_gltf(file)           ? load_gltf(file, warn, images, pose, executor)
+            : is_gaussian_ply(file) ? load_gaussian_ply(file, warn)
+                                    : SceneImporter().load(file, warn, images, pose, executor);
   } catch (const ModuleError& missing) {
     throw ConfigError("scene.file", config.file + " is no glTF file, and " + missing.what());
   }
@@ -89,6 +92,7 @@ Scene load_scene(const SceneConfig& config, const std::filesystem::path& config_
   if (config.sky && !config.sky->file.empty())
     map = find_file("scene.sky.file", "an environment map (.hdr or .exr)", config.sky->file, config_dir);
   Scene scene = config.builtin ? make_builtin(config) : load_file(config, config_dir, warn, images, executor);
+  place_gaussians(scene, config.gaussians, config.builtin ? scene.name : config.file);
   if (config.quantise > 0) quantise(scene, static_cast<int>(config.quantise));
   if (map) {
     scene.sky = {Vec3{0}, load_sky_map(*map, *config.sky, warn)};

@@ -37,6 +37,7 @@ class AccelBuilder {
     accel_.width = static_cast<int>(config.width);
     accel_.accuracy = accuracy;
     accel_.programs = scene.programs;
+    accel_.gaussians = gaussian_shapes(scene.gaussians);
   }
 
   Accel run() {

@@ -25,14 +25,27 @@ void NearestRay::start(RayRecord& record) {
   strayed_ = false;
   count_ = found_count_ = round_ = 0;
   visits_ = waiting_bytes_ = 0;
+  light_ = Vec3(0);
+  transmittance_ = 1;
+  blended_ = false;
   nodes_.clear();
   hits_.clear();
   point_to(this, record);
 }
 
-std::uint64_t NearestRay::insert(const Hit& hit) {
+std::uint64_t NearestRay::insert(const Hit& offered) {
   NearestCounts& counts = shared_->use.counts;
   ++counts.offered;
+  if (shared_->gaussians == nullptr) return put(offered);
+  ++counts.responses;
+  counts.response_bytes += shared_->gaussians->bytes_apart();
+  Hit hit;
+  if (!shared_->gaussians->respond(record_->ray, tmin_, offered, hit)) return shared_->response_steps;
+  return shared_->response_steps + put(hit);
+}
+
+std::uint64_t NearestRay::put(const Hit& hit) {
+  NearestCounts& counts = shared_->use.counts;
   // A round that begins at the root again meets the hits that the rounds before have found.
   if (was_found(hit)) {
     counts.read_bytes += kBufferedHitBytes;
@@ -110,22 +123,45 @@ std::optional<WaitingNode> NearestRay::go_on() {
     }
     const bool was_full = full();
     // finish() ends the last round.
-    if (!was_full || found_count_ + count_ == shared_->nearest) return std::nullopt;
+    if (!was_full || found_count_ + count_ == shared_->nearest || blend()) return std::nullopt;
     if (resumes() && nodes_.empty() && hits_.empty()) return std::nullopt;
     end_round();
     if (!resumes()) {
-      record_->ray.tmin = fears_strays() ? found_[found_count_ - 1].t : tmin_;
+      record_->ray.tmin = fears_strays() ? last_.t : tmin_;
       return WaitingNode{shared_->root, 0, 0};
     }
     refill();
   }
 }
 
+bool NearestRay::blend() {
+  const GaussianShapes* const gaussians = shared_->gaussians;
+  if (gaussians == nullptr) return false;
+  for (std::uint32_t i = 0; !blended_ && i < count_ && !(transmittance_ < gaussians->opaque_below()); ++i) {
+    const float alpha = gaussians->alpha(buffer_[i]);
+    light_ += transmittance_ * alpha * gaussians->color(buffer_[i]);
+    transmittance_ *= 1 - alpha;
+    ++shared_->use.counts.blended;
+  }
+  if (!blended_ && count_ > 0) {
+    shared_->use.counts.read_bytes += kBlendedLightBytes;
+    shared_->use.counts.written_bytes += kBlendedLightBytes;
+  }
+  blended_ = true;
+  return transmittance_ < gaussians->opaque_below();
+}
+
 void NearestRay::end_round() {
   NearestUse& use = shared_->use;
+  blend();
   if (found_ != buffer_) std::copy(buffer_, buffer_ + count_, found_ + found_count_);
+  if (count_ > 0) {
+    if (found_count_ == 0) first_ = buffer_[0];
+    last_ = buffer_[count_ - 1];
+  }
   // The first hit goes with the record.
-  shared_->sent_bytes += kBufferedHitBytes * (count_ - (found_count_ == 0 && count_ > 0 ? 1 : 0));
+  if (shared_->gaussians == nullptr)
+    shared_->sent_bytes += kBufferedHitBytes * (count_ - (found_count_ == 0 && count_ > 0 ? 1 : 0));
   use.counts.read_bytes += kBufferedHitBytes * count_;
   ++use.counts.rounds;
   if (use.rounds.size() <= round_) use.rounds.resize(round_ + 1);
@@ -133,6 +169,7 @@ void NearestRay::end_round() {
   use.rounds[round_].visits += visits_;
   found_count_ += count_;
   count_ = 0;
+  blended_ = false;
   ++round_;
   visits_ = 0;
   record_->hit = Hit{};
@@ -160,9 +197,11 @@ std::span<const Hit> NearestRay::finish() {
   shared_->use.counts.hits += found_count_;
   ++shared_->use.counts.rays;
   record_->ray.tmin = tmin_;
-  record_->hit = found_count_ > 0 ? found_[0] : Hit{};
+  record_->hit = found_count_ > 0 ? first_ : Hit{};
   record_->tag.flags &= static_cast<std::uint8_t>(~kRayNearest);
-  return {found_, found_count_};
+  if (shared_->gaussians == nullptr) return {found_, found_count_};
+  shared_->sent_bytes += kBlendedLightBytes;
+  return {&first_, std::min(found_count_, 1u)};
 }
 
 }  // namespace carousel::accel

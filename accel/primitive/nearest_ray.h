@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "accel/structure/gaussian_shapes.h"
 #include "accel/structure/node.h"
 #include "core/config/fields/rays.h"
 #include "core/numeric/digest.h"
@@ -36,6 +37,8 @@ struct NearestShared {
   std::uint32_t nearest = 0, buffered = 0;  ///< of QueryConfig
   QueryConfig::Rounds rounds = QueryConfig::Rounds::kRestart;
   bool leaves_out = false;  ///< a round that begins again leaves out boxes that end before the hits that it has found
+  const GaussianShapes* gaussians = nullptr;  ///< null: hits are those of surfaces
+  std::uint32_t response_steps = 0;           ///< of QueryConfig
   NearestUse use{};
   std::uint64_t sent_bytes = 0;  ///< of hits that rays have found, besides each ray's first, since they were last taken
   HitsDigest digest{};           ///< of all hits of completed rays
@@ -55,6 +58,10 @@ struct NearestShared {
 /// is before it could be lost, since a box that ends before the last hit of a round was entered in it. Boxes of several
 /// spaces round differently, so nothing is left out where instances have transforms.
 ///
+/// The hits of a Gaussian are where the ray meets its greatest response (GaussianShapes). They are blended from the
+/// front at the end of each round, their light stays in the record, and the ray looks for no more of them when it is
+/// opaque. So only the last hit that was found is kept.
+///
 /// When the walk has no node left it asks go_on(). A round gives the hits in the buffer away (C. Gribble et al.,
 /// Multi-Hit Ray Traversal, JCGT 3(1), 2014, has one buffer for all; rounds are those of GRTX, HPCA 2026). Owned by
 /// the store; the owner's thread alone calls.
@@ -62,6 +69,7 @@ class NearestRay {
  public:
   /// The buffer of a slot; `buffer` has room for NearestShared::buffered hits, and `found` for all. They are the same
   /// where one round finds all.
+  /// With Gaussians `found` is the buffer.
   NearestRay(NearestShared& shared, Hit* buffer, Hit* found) : shared_(&shared), buffer_(buffer), found_(found) {}
 
   /// Begins with a record that accel::start_record() has made. It keeps its place in memory until finish().
@@ -85,8 +93,12 @@ class NearestRay {
   bool set_aside(const WaitingNode& node);
   /// The walk has no node left: the node with which it goes on, or nothing if the ray has found all that it looks for.
   std::optional<WaitingNode> go_on();
-  /// Ends the ray: its record has the closest hit, or is a miss. Returns all hits in order, valid until start().
+  /// Ends the ray: its record has the closest hit, or is a miss. Returns all hits in order, valid until start(); of
+  /// Gaussians the closest one.
   std::span<const Hit> finish();
+  /// Light from the Gaussians of a ray that is finished, and the share of the light behind them that reaches it.
+  const Vec3& light() const { return light_; }
+  float transmittance() const { return transmittance_; }
 
  private:
   bool resumes() const {
@@ -96,10 +108,13 @@ class NearestRay {
   std::uint32_t capacity() const { return std::min(shared_->buffered, shared_->nearest - found_count_); }
   bool full() const { return count_ == capacity(); }
   float end() const { return full() && count_ > 0 ? buffer_[count_ - 1].t : record_->ray.tmax; }
+  std::uint64_t put(const Hit& hit);
   void set_bound();
   void end_round();
+  /// Blends the hits of the round, once. True if the ray is opaque.
+  bool blend();
   /// True for hits of the rounds before.
-  bool was_found(const Hit& hit) const { return found_count_ > 0 && !nearer(found_[found_count_ - 1], hit); }
+  bool was_found(const Hit& hit) const { return found_count_ > 0 && !nearer(last_, hit); }
   void refill();
   void set_hit_aside(const Hit& hit);
   void waits(std::uint64_t bytes);
@@ -113,6 +128,10 @@ class NearestRay {
   bool strayed_ = false;
   std::uint32_t count_ = 0;        ///< in the buffer
   std::uint32_t found_count_ = 0;  ///< given away by the rounds before
+  Hit first_, last_;               ///< of these
+  Vec3 light_{0};
+  float transmittance_ = 1;
+  bool blended_ = false;  ///< the hits in the buffer
   std::uint32_t round_ = 0;
   std::uint64_t visits_ = 0;         ///< of this round
   std::uint64_t waiting_bytes_ = 0;  ///< of both below

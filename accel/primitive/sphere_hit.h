@@ -22,6 +22,13 @@ template <class Slab>
   const auto [centre, radius] = sphere_in(block, lane);
   SphereCrossing crossing;
   if (!cross_sphere(ray.origin, ray.direction, centre, radius, crossing)) return false;
+  if (accel.gaussians != nullptr) [[unlikely]] {
+    // The ray meets the ellipsoid. Its response may be greatest within although the ray begins there, and other rays
+    // meet no Gaussians.
+    const Hit shape{ray.record->ray.tmin, 0, 0, ray.instance, block.primitive[lane] & kPrimitiveMask};
+    static_cast<void>(reported(accel, ray, shape, false));
+    return false;
+  }
   float entry;
   if (!slab(ray.slab, sphere_box(centre, radius), hit.t, entry)) return false;
   if (NearestRay* const nearest = nearest_of(*ray.record); nearest != nullptr && nearest->fears_strays())

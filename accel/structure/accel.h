@@ -7,6 +7,7 @@
 
 #include "accel/structure/bounding_elements.h"
 #include "accel/structure/cull_plane.h"
+#include "accel/structure/gaussian_shapes.h"
 #include "accel/structure/group_placement.h"
 #include "accel/structure/guest_shapes.h"
 #include "accel/structure/merged_meshes.h"
@@ -65,6 +66,7 @@ struct Accel {
   PlacedMicromaps micromaps;        ///< asked before `any_hit`, set with it
   HitSink* all_hits = nullptr;      ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   NearestSink* nearest_hits = nullptr;  ///< takes the hits of rays that look for several, set before tracing; or null
+  std::shared_ptr<const GaussianShapes> gaussians;  ///< null: the scene consists of surfaces
   std::vector<RayProgram> programs;     ///< of primitives; kept by no rank apart, as a unit holds them all
   AccuracyConfig accuracy;              ///< arithmetic of the tests on it
   bool procedural_primitives = false;   ///< there are some
@@ -84,7 +86,7 @@ struct Accel {
   std::size_t size_bytes() const {
     return nodes.here() * sizeof(Node) + blocks.here() * sizeof(TriangleBlock) + elements.size_bytes() + plane_bytes +
            instances.size() * sizeof(InstanceNode) + groups.size() * sizeof(GroupPlacement) +
-           members.size() * sizeof(std::uint32_t);
+           members.size() * sizeof(std::uint32_t) + (gaussians ? gaussians->size_bytes() : 0);
   }
   /// The node at which every ray starts: the top level's root, or the root of the only instance.
   NodeKey root_key() const { return root; }

@@ -101,11 +101,12 @@ double stack_kib(const Config& c, std::int64_t resource) {
   return register_kib(c, resource) + (static_cast<double>(simt.warp * simt.warps) * kNodeBytes + votes) / kKiB;
 }
 
-/// Bytes beside a record for its buffer of hits, and for what waits for a later round.
-double hit_buffer_bytes(const Config& c) {
+/// Bytes beside a record for its buffer of hits, for what waits for a later round, and for light from Gaussians.
+double hit_buffer_bytes(const Config& c, const SceneFacts& scene) {
   const QueryConfig& query = c.rays.query;
   const bool resumes = query.in_rounds() && query.rounds == QueryConfig::Rounds::kResume;
-  return static_cast<double>(query.buffered()) * static_cast<double>(kBufferedHitBytes) + (resumes ? kWaitingBytes : 0);
+  return static_cast<double>(query.buffered()) * static_cast<double>(kBufferedHitBytes) +
+         (resumes ? kWaitingBytes : 0) + (scene.gaussians ? static_cast<double>(kBlendedLightBytes) : 0);
 }
 
 }  // namespace
@@ -136,7 +137,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   const auto all = [&](const auto& of) { return static_cast<double>(sum_of_resources(c, of)); };
   const auto slots = static_cast<double>(all_slots(c));
   parts[AreaPart::kUnits].mm2 += program_kib(c) * cost(c, Cost::kSramArea);
-  store(AreaPart::kRayStores, slots * (kRecordBytes + hit_buffer_bytes(c)) / kKiB);
+  store(AreaPart::kRayStores, slots * (kRecordBytes + hit_buffer_bytes(c, scene)) / kKiB);
   if (c.rays.banks > 0)  // each bank has two ports
     parts[AreaPart::kRayStores].mm2 += parts[AreaPart::kRayStores].size * cost(c, Cost::kPortArea);
   if (topology.has_packets())

@@ -49,6 +49,7 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   std::uint64_t bytes =
       scene.instances.size() * sizeof(scene::Instance) + scene.placements.size() * sizeof(scene::GroupPlacement);
   for (const scene::Image& image : scene.images) bytes += image.rgba.size();
+  bytes += scene.gaussians.shapes.size() * sizeof(scene::Gaussian);
   bytes += scene.sky.map.texels.size() * (sizeof(Vec3) + sizeof(std::uint32_t));  // with its SkyLight
   for (const scene::Mesh& mesh : scene.meshes) {
     bytes += mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3);
@@ -70,14 +71,21 @@ std::uint64_t paths_in_flight(const Config& config) {
 
 MemoryNeed estimate_before_scene(const Config& config, bool keep_hits) {
   MemoryNeed need = frame_need(config, keep_hits);
-  need.ring = ringbus::estimate_memory(config, kAssumedDepth);
+  const bool gaussians = config.scene.builtin.value_or(BuiltinScene::kGaussians) == BuiltinScene::kGaussians;
+  need.ring = ringbus::estimate_memory(config, kAssumedDepth, gaussians);
   if (!config.scene.builtin) return need;
   const bool instances = *config.scene.builtin == BuiltinScene::kInstances;
-  const bool sized = *config.scene.builtin != BuiltinScene::kCornell && !instances;
+  const bool sized = *config.scene.builtin != BuiltinScene::kCornell && !instances && !gaussians;
   if (sized) need.scene = static_cast<std::uint64_t>(config.scene.triangles) * kSceneBytesPerTriangle;
   if (config.scene.placement == ScenePlacement::kPartitioned) return need;  // this rank's share may be small
   if (sized) need.accel = static_cast<std::uint64_t>(config.scene.triangles) * kAccelBytesPerTriangle;
   if (instances) need.accel = static_cast<std::uint64_t>(config.scene.instances) * kBytesPerInstance;
+  if (gaussians) {
+    const GaussiansConfig& cloud = config.scene.gaussians;
+    const bool triangles = cloud.geometry == GaussiansConfig::Geometry::kTriangles;
+    need.accel = static_cast<std::uint64_t>(cloud.count) *
+                 (triangles ? scene::kProxyTriangles * kAccelBytesPerTriangle : kBytesPerInstance);
+  }
   return need;
 }
 
@@ -87,7 +95,7 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
   if (need.paths > 0) need.paths = paths_in_flight(config) * shading::plan_effects(scene, config).path_state_bytes();
   need.accel = accel.size_bytes();
   if (config.verify == Verify::kReference) need.accel += accel::HitOracle::foretold_bytes(scene);
-  need.ring = ringbus::estimate_memory(config, accel.max_depth);
+  need.ring = ringbus::estimate_memory(config, accel.max_depth, accel.gaussians != nullptr);
   return need;
 }
 

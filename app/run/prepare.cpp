@@ -110,6 +110,7 @@ void load_scene(Prepared& p, const SceneConfig& config) {
 }
 
 void set_query(Prepared& p) {
+  if (p.accel.gaussians) require_for_gaussians(p.config(), p.located.positions);
   const QueryConfig& query = p.config().rays.query;
   const bool all = query.hits == Query::kAll, several = query.nearest > 0,
              list = p.config().workload.kind == WorkloadConfig::Kind::kRaysFrom;

@@ -22,6 +22,8 @@ constexpr Row kRows[] = {
     {"scene.triangles", kSizedScene},
     {"scene.instances", kInstances},
     {"scene.levels", kInstances},
+    {"scene.gaussians", kGaussians},
+    {"scene.gaussians.count", kGaussianCloud},
     {"scene.seed", kSeededScene},
     {"scene.camera", kSceneCamera},
     {"scene.sky", kPicture},
@@ -80,6 +82,7 @@ constexpr Row kRows[] = {
     {"rays.query.hits", kList},
     {"rays.query.buffer", kNearest},
     {"rays.query.rounds", kRounds},
+    {"rays.query.response_steps", kGaussians},
     {"rays.hits_per_ray", kQueryAll},
     {"rays.queue", kNative},
     {"rays.queue_depth", kNative},
@@ -371,10 +374,9 @@ std::optional<std::string_view> units_unused(const C& c, const S& s, std::string
       std::find_if(kCostTable.begin(), kCostTable.end(), [&](const CostRow& of) { return of.key == name; });
   if (cost && row != kCostTable.end() && !kProfile.holds(c, s)) return kProfile.otherwise;
   for (const UnitKindRow& unit : kUnitKinds)
-    if (const Condition* needed = condition_of(unit.kind);
-        unit.key == name && needed != nullptr && !needed->holds(c, s) &&
-        !(lies_in(key, "energy.bundle") && has_bundles(c)) && !lies_in(key, "energy.reciprocal"))  // of each ray
-      return needed->otherwise;
+    if (unit.key == name && !has_units(c, s, unit.kind) && !(lies_in(key, "energy.bundle") && has_bundles(c)) &&
+        !lies_in(key, "energy.reciprocal"))  // of each ray
+      return condition_of(unit.kind)->otherwise;
   return std::nullopt;
 }
 

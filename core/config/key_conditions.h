@@ -17,6 +17,7 @@ struct SceneFacts {
   bool any_hit = true;     ///< some hits are decided by any-hit calls
   bool procedural = true;  ///< there are procedural primitives
   bool planes = true;      ///< nodes have cull planes
+  bool gaussians = true;   ///< it consists of Gaussians
 };
 
 /// The reason for which the machine cannot feel `key`, a path without list indices: a clause such as "one resource has

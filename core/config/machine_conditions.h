@@ -136,6 +136,10 @@ inline constexpr Condition kSizedScene{[](const C& c, const S&) {
                                                 is_generated(c, BuiltinScene::kFoliage);
                                        },
                                        "the scene has as many triangles as it has"};
+inline constexpr Condition kGaussianCloud{
+    [](const C& c, const S&) { return is_generated(c, BuiltinScene::kGaussians); },
+    "the scene is not the generated one of Gaussians"};
+inline constexpr Condition kGaussians{[](const C&, const S& s) { return s.gaussians; }, "the scene has no Gaussians"};
 inline constexpr Condition kInstances{[](const C& c, const S&) { return is_generated(c, BuiltinScene::kInstances); },
                                       "the scene is not the generated one of instances"};
 inline constexpr Condition kOwnCamera{[](const C& c, const S&) { return c.camera.eye.has_value(); },

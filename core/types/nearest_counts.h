@@ -10,15 +10,18 @@ namespace carousel {
 
 /// Bytes of a hit in a buffer: distance, where on the primitive, instance and primitive.
 inline constexpr std::uint64_t kBufferedHitBytes = 20;
+/// Bytes of the light from Gaussians beside a record: three colours, and the share of the light behind them.
+inline constexpr std::uint64_t kBlendedLightBytes = 16;
 
 /// The cost of looking for several nearest hits. docs/how-it-works/nearest.md says what each step is.
 struct NearestCounts {
   std::uint64_t rays = 0, hits = 0, offered = 0, inserted = 0, evicted = 0, rounds = 0, strays = 0;
+  std::uint64_t responses = 0, response_bytes = 0, blended = 0;
   std::uint64_t read_bytes = 0, written_bytes = 0;
   std::uint64_t waiting_nodes = 0, waiting_hits = 0, waiting_bytes = 0, waiting_peak_bytes = 0;
 
   /// All bytes that buffers, and what is set aside for them, have cost.
-  std::uint64_t moved_bytes() const { return read_bytes + written_bytes + waiting_bytes; }
+  std::uint64_t moved_bytes() const { return read_bytes + written_bytes + waiting_bytes + response_bytes; }
 
   static constexpr auto counters() {
     using C = NearestCounts;
@@ -31,6 +34,12 @@ struct NearestCounts {
         Counter{"rounds", &C::rounds, "rounds", "rounds of all rays; at least one a ray"},
         Counter{"strays", &C::strays, "rays",
                 "rays that met a hit behind the end of its box, whose further rounds leave nothing out"},
+        Counter{"responses", &C::responses, "Gaussians", "Gaussians whose greatest response along a ray was computed"},
+        Counter{
+            "response_bytes", &C::response_bytes, "bytes",
+            "bytes of Gaussians that were read for that, where their shapes are triangles; a sphere's are read with "
+            "its instance"},
+        Counter{"blended", &C::blended, "Gaussians", "those that gave light to a ray, until it was opaque"},
         Counter{"read_bytes", &C::read_bytes, "bytes", "bytes read from the buffers"},
         Counter{"written_bytes", &C::written_bytes, "bytes", "bytes written to the buffers"},
         Counter{"waiting_nodes", &C::waiting_nodes, "nodes",

@@ -21,6 +21,8 @@ struct RayResult {
   Ray ray;
   Hit hit;
   RayTag tag;
+  Vec3 light{0};            ///< from the Gaussians in its way
+  float transmittance = 1;  ///< share of the light behind them that reaches it
 };
 
 /// The work of shading a hit beyond that of a plain surface.

@@ -12,7 +12,7 @@
 
 namespace carousel::ringbus {
 
-MemoryEstimate estimate_memory(const Config& config, int max_depth) {
+MemoryEstimate estimate_memory(const Config& config, int max_depth, bool gaussians) {
   const auto u = [](std::int64_t x) { return static_cast<std::uint64_t>(x); };
   const std::uint64_t resources = u(config.topology.resources), slots = u(all_slots(config));
   const std::uint64_t packet_rays = u(config.packets.rays);
@@ -23,7 +23,7 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth) {
   const QueryConfig& query = config.rays.query;
   if (query.nearest > 0)
     e.ray_store += slots * (sizeof(accel::NearestRay) +
-                            u(query.buffered() + (query.in_rounds() ? query.nearest : 0)) * sizeof(Hit));
+                            u(query.buffered() + (query.in_rounds() && !gaussians ? query.nearest : 0)) * sizeof(Hit));
   if (config.bundles.size > 0) {
     const auto records = [&](const OwnSections& one) {
       const BundleRoom room = bundle_room(config.bundles, one.rays.slots_per_resource);

@@ -19,7 +19,7 @@ struct MemoryEstimate {
   std::uint64_t total() const { return ray_store + ray_stacks + collections + packets + rays_waiting; }
 };
 
-/// `max_depth` is that of the structure (Accel::max_depth).
-MemoryEstimate estimate_memory(const Config& config, int max_depth);
+/// `max_depth` is that of the structure (Accel::max_depth). Rays blend `gaussians` and do not keep what they have met.
+MemoryEstimate estimate_memory(const Config& config, int max_depth, bool gaussians = false);
 
 }  // namespace carousel::ringbus

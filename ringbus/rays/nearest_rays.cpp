@@ -24,7 +24,9 @@ void NearestRays::finish(RayRecord& record, HitBatch& out) {
   if (ray == nullptr) return accel::finish_record(record, out);
   const std::span<const Hit> hits = ray->finish();
   accel::finish_record(record, out);
-  const RayResult& result = out.back();
+  RayResult& result = out.back();
+  result.light = ray->light();
+  result.transmittance = ray->transmittance();
   const std::uint32_t name = name_of(result.ray);
   std::uint32_t rank = 0;
   for (const Hit& hit : hits) shared_.digest.add(hit_term(name, rank++, result.tag, hit));

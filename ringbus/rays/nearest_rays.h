@@ -20,11 +20,16 @@ namespace carousel::ringbus {
 class NearestRays {
  public:
   NearestRays(const QueryConfig& query, const accel::Accel& accel, std::uint32_t slots)
-      : shared_{accel.root_key(), static_cast<std::uint32_t>(query.nearest),
-                static_cast<std::uint32_t>(query.buffered()), query.rounds, leaves_out(query, accel)},
+      : shared_{accel.root_key(),
+                static_cast<std::uint32_t>(query.nearest),
+                static_cast<std::uint32_t>(query.buffered()),
+                query.rounds,
+                leaves_out(query, accel),
+                accel.gaussians.get(),
+                static_cast<std::uint32_t>(query.response_steps)},
         sink_(accel.nearest_hits),
         buffers_(std::size_t{slots} * shared_.buffered),
-        found_(query.in_rounds() ? std::size_t{slots} * shared_.nearest : 0) {
+        found_(query.in_rounds() && !accel.gaussians ? std::size_t{slots} * shared_.nearest : 0) {
     rays_.reserve(slots);
     for (std::size_t slot = 0; slot < slots; ++slot) {
       Hit* const buffer = buffers_.data() + slot * shared_.buffered;
@@ -58,8 +63,8 @@ class NearestRays {
   /// Cull planes and elements that are no boxes have ends of their own.
   static bool leaves_out(const QueryConfig& query, const accel::Accel& accel) {
     const auto moved = [](const accel::InstanceNode& instance) { return !instance.transform.identity; };
-    return query.in_rounds() && query.rounds == QueryConfig::Rounds::kRestart && accel.planes.empty() &&
-           accel.elements.empty() && accel.groups.empty() &&
+    return query.in_rounds() && accel.gaussians == nullptr && query.rounds == QueryConfig::Rounds::kRestart &&
+           accel.planes.empty() && accel.elements.empty() && accel.groups.empty() &&
            std::none_of(accel.instances.begin(), accel.instances.end(), moved);
   }
 
@@ -67,7 +72,7 @@ class NearestRays {
   NearestSink* sink_;                    // takes the hits of completed rays; null: nobody does
   std::vector<accel::NearestRay> rays_;  // by slot
   std::vector<Hit> buffers_;             // by slot: `buffered` each
-  std::vector<Hit> found_;               // by slot: `nearest` each; empty where one round finds all
+  std::vector<Hit> found_;               // by slot: `nearest` each; empty where one round finds all, and with Gaussians
 };
 
 }  // namespace carousel::ringbus

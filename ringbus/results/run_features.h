@@ -15,7 +15,8 @@ inline SceneFacts scene_facts(const accel::Accel& accel) {
   return {.transforms = std::any_of(accel.instances.begin(), accel.instances.end(), moved),
           .any_hit = accel.calls_any_hit(),
           .procedural = accel.procedural_primitives,
-          .planes = !accel.planes.empty()};
+          .planes = !accel.planes.empty(),
+          .gaussians = accel.gaussians != nullptr};
 }
 
 /// The features of the configured machine with a scene: its report shows only these.

@@ -32,6 +32,8 @@ Scene make_builtin(const SceneConfig& config) {
       return make_sliver(triangles(), config.seed);
     case BuiltinScene::kFoliage:
       return make_foliage(triangles(), config.seed);
+    case BuiltinScene::kGaussians:
+      return make_gaussians(checked_count(config.gaussians.count, "scene.gaussians.count"), config.seed);
   }
   throw ConfigError("scene.builtin", "unknown built-in scene");
 }

@@ -29,6 +29,9 @@ Scene make_sliver(std::int64_t triangles, std::int64_t seed);
 /// leaves out of them.
 Scene make_foliage(std::int64_t triangles, std::int64_t seed);
 
+/// A cloud of `count` flat Gaussians on a ball with waves (Scene::gaussians); place_gaussians() gives them shapes.
+Scene make_gaussians(std::int64_t count, std::int64_t seed);
+
 /// The scene `config.builtin` names (which must be set), with its own sky; `config.sky` is not looked at.
 /// Throws ConfigError when a count is outside [1, 2^28].
 Scene make_builtin(const SceneConfig& config);

@@ -22,6 +22,7 @@
 #include "scene/gltf/document/checks.h"
 #include "scene/gltf/document/document.h"
 #include "scene/gltf/document/schema.h"
+#include "scene/gltf/gaussians.h"
 #include "scene/gltf/materials/images.h"
 #include "scene/gltf/materials/materials.h"
 #include "scene/gltf/meshes.h"
@@ -87,6 +88,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
   scene.motion = motion_of(document, accessors);
   if (pose) pose_nodes(document, accessors, budget, *pose, warn, model.model);
   std::vector<NodeMesh> made = read_nodes(document, model.model, accessors, budget, default_material, warn, scene);
+  read_gaussians(document, model.model, accessors, budget, warn, scene);
   MeshReader meshes(document, model.model, accessors, budget, default_material, warn);
   DracoReader draco(document, accessors, budget);
   JointTable joints(document, model.model, accessors, budget);
@@ -95,8 +97,9 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
     warn(file + ": " + std::to_string(meshes.skipped_primitives()) +
          " primitives skipped: points, lines or without positions");
   }
-  const bool empty =
-      std::ranges::all_of(scene.meshes, [](const Mesh& m) { return m.indices.empty() && m.spheres.empty(); });
+  const bool empty = scene.gaussians.empty() && std::ranges::all_of(scene.meshes, [](const Mesh& m) {
+                       return m.indices.empty() && m.spheres.empty();
+                     });
   read_images(document, resources, model, budget, images, choice, executor, scene);
   if (empty) {
     // Other faults come first: they may be why nothing is shown.

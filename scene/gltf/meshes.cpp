@@ -13,6 +13,7 @@
 
 #include "core/system/error.h"
 #include "scene/gltf/document/uses.h"
+#include "scene/gltf/gaussians.h"
 
 namespace carousel::scene {
 
@@ -274,7 +275,7 @@ Mesh MeshReader::read(std::size_t index, const Bend* bend) {
     const tinygltf::Primitive& primitive = source.primitives[p];
     const std::string path = json_path(json_path(json_path("/meshes", index), "primitives"), p);
     if (!usable(primitive)) {
-      ++skipped_;
+      skipped_ += !has_gaussians(primitive);
       continue;
     }
     const Attributes& whole = attributes_of(primitive, path, bend);

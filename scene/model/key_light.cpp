@@ -48,7 +48,7 @@ std::vector<bool> lighting_materials(const Scene& scene) {
 }  // namespace
 
 bool has_light(const Scene& scene) {
-  if (!scene.lights.empty()) return true;
+  if (!scene.lights.empty() || !scene.gaussians.empty()) return true;
   const std::vector<bool> lighting = lighting_materials(scene);
   return std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     const std::vector<MaterialId>& used = scene.meshes[instance.mesh.value].triangle_materials;

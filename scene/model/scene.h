@@ -10,6 +10,7 @@
 #include "core/types/aabb.h"
 #include "core/types/ids.h"
 #include "core/types/vec.h"
+#include "scene/model/gaussians.h"
 #include "scene/model/pose_choice.h"
 #include "scene/model/sky_map.h"
 
@@ -223,6 +224,7 @@ struct Scene {
   std::vector<GroupPlacement> placements;  ///< placements of groups, parents before those inside
   std::vector<NamedNode> nodes;            ///< in depth-first order; a file may give one name to several
   Motion motion;                           ///< what may move; instances and meshes stand still
+  GaussianCloud gaussians;                 ///< if any, all there is to see; instances are their shapes
   std::vector<RayProgram> programs;        ///< of primitives, whose numbers Sphere::program names
   std::vector<PunctualLight> lights;
   std::vector<Camera> cameras;  ///< at least one: the file's, or one that was made up

@@ -11,7 +11,7 @@
 
 #include "core/types/vec.h"
 #include "shading/bsdf/lambert.h"
-#include "shading/math/exponential.h"
+#include "core/numeric/exponential.h"
 
 namespace carousel::shading {
 

@@ -7,7 +7,7 @@
 
 #include "shading/bsdf/fresnel.h"
 #include "shading/bsdf/ggx.h"
-#include "shading/math/exponential.h"
+#include "core/numeric/exponential.h"
 #include "shading/math/trigonometry.h"
 
 namespace carousel::shading {

@@ -66,6 +66,8 @@ void PathTracer::shade_batch(WorkerId worker_id, const HitBatch& completed, RayB
     std::uint32_t children = 0;
     if (result.tag.kind == RayKind::kShadow) {
       shade_shadow(result, worker, out, children);
+    } else if (!scene_.gaussians.empty()) {
+      shade_gaussians(result, worker);
     } else if (!result.hit.valid()) {
       shade_miss(result, worker);
     } else {

@@ -6,8 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/exponential.h"
 #include "core/numeric/fixed_point.h"
-#include "shading/math/exponential.h"
 #include "shading/tracer/path_tracer-inl.h"
 
 namespace carousel::shading {
@@ -124,7 +124,7 @@ ShadeWork PathTracer::extra_work(const RayResult& result) const {
 void PathTracer::sky_reads(const RayResult& result, std::vector<SkyRead>& out) const {
   if (!lights_.has_sky() || result.tag.kind == RayKind::kShadow) return;
   const Hit& hit = result.hit;
-  if (!hit.valid()) return lights_.append_sky_reads(result.ray.direction, out);
+  if (!hit.valid() || !scene_.gaussians.empty()) return lights_.append_sky_reads(result.ray.direction, out);
   if (triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v).material->unlit) return;
   const PathState& path = pool_.state(result.tag.path);
   lights_.append_sky_reads(sampler_.light(path.pixel, path.sample, result.tag.bounce), out);

@@ -133,6 +133,7 @@ class PathTracer : public Workload {
   void absorb(const RayResult& result);
   Vec3 passed(std::uint32_t medium, float distance) const;
   void shade_miss(const RayResult& result, Worker& worker);
+  void shade_gaussians(const RayResult& result, Worker& worker);
   /// Starts path `ordinal` of the frame in state `index`.
   PixelSample begin_path(std::uint64_t ordinal, std::uint32_t index);
   Generated generate_from_hits(WorkerId worker, std::size_t max_rays, RayBatch& out);

@@ -13,6 +13,7 @@
 #include "core/numeric/bytes_digest.h"
 #include "core/system/error.h"
 #include "core/system/input_file.h"
+#include "scene/import/gaussian_ply.h"
 #include "scene/import/import_file.h"
 
 namespace carousel::app {
@@ -71,6 +72,7 @@ std::vector<std::filesystem::path> named_in_gltf(const std::filesystem::path& pa
 /// The files that a scene of another format names: the module that reads it knows them. The import reports what is
 /// wrong with the file or the module.
 std::vector<std::filesystem::path> named_in_other(const std::filesystem::path& path) {
+  if (scene::is_gaussian_ply(path)) return {};
   try {
     std::vector<std::filesystem::path> out = scene::SceneImporter().files_of(path);
     if (!out.empty()) out.erase(out.begin());  // itself

@@ -32,11 +32,14 @@ inline constexpr auto kEnumNames<Query> = [] {
 struct QueryConfig {
   Query hits = Query::kClosest;
   std::int64_t nearest = 0;            ///< 0: the closest alone
-  std::optional<std::int64_t> buffer;  ///< absent: as many as `nearest`
+  std::optional<std::int64_t> buffer;  ///< absent: as many as `nearest`, and 64 at most
   enum class Rounds { kRestart, kResume } rounds = Rounds::kRestart;
+  std::int64_t response_steps = 8;
+
+  static constexpr std::int64_t kMostBuffered = 64;
 
   /// The hits that a ray's buffer holds at once.
-  std::int64_t buffered() const { return std::min(buffer.value_or(nearest), nearest); }
+  std::int64_t buffered() const { return std::min(buffer.value_or(kMostBuffered), nearest); }
   /// True if one pass of the tree does not find them all.
   bool in_rounds() const { return buffered() < nearest; }
   friend bool operator==(const QueryConfig&, const QueryConfig&) = default;
@@ -59,7 +62,7 @@ struct RaysConfig {
 
 namespace config {
 
-inline constexpr std::int64_t kMostNearest = 64;
+inline constexpr std::int64_t kMostNearest = 65536;
 
 template <class V>
 void describe(V& v, QueryConfig& c) {
@@ -68,12 +71,16 @@ void describe(V& v, QueryConfig& c) {
       "nearest", c.nearest, IntRange{0, kMostNearest}, "hits",
       "The nearest hits that a ray looks for which would look for the closest one. With 0 it finds that one alone.");
   v.field_or_auto(
-      "buffer", c.buffer, IntRange{1, kMostNearest}, "hits",
+      "buffer", c.buffer, IntRange{1, QueryConfig::kMostBuffered}, "hits",
       "The hits that the sorted buffer beside a ray's record holds. With fewer than nearest a ray finds its "
-      "hits in rounds. auto: as many as nearest.");
+      "hits in rounds. auto: as many as nearest, and 64 at most.");
   v.choice("rounds", c.rounds,
            "A further round begins at the root again and leaves out the hits that have been found; or it goes on with "
            "the nodes and hits that the rounds before have set aside.");
+  v.field(
+      "response_steps", c.response_steps, IntRange{0, 1024}, "steps",
+      "The steps of a testers.hit_buffer unit for the greatest response of a Gaussian along a ray, and for its share "
+      "in the ray's light.");
 }
 
 template <class V>

@@ -12,7 +12,7 @@
 
 namespace carousel {
 
-enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver, kFoliage };
+enum class BuiltinScene { kCornell, kSpheres, kTerrain, kInstances, kSliver, kFoliage, kGaussians };
 template <>
 inline constexpr auto kEnumNames<BuiltinScene> = [] {
   using enum BuiltinScene;
@@ -21,7 +21,8 @@ inline constexpr auto kEnumNames<BuiltinScene> = [] {
                               {kTerrain, "terrain"},
                               {kInstances, "instances"},
                               {kSliver, "sliver"},
-                              {kFoliage, "foliage"}});
+                              {kFoliage, "foliage"},
+                              {kGaussians, "gaussians"}});
 }();
 
 /// True for a generated scene that is another one at another time.
@@ -85,6 +86,21 @@ struct SceneObject {
   float metallic = 0, roughness = 0.5f;
 };
 
+/// The Gaussians of a scene: a file's (glTF, PLY) or those of the built-in cloud.
+struct GaussiansConfig {
+  enum class Geometry { kEllipsoids, kTriangles } geometry = Geometry::kEllipsoids;
+  std::int64_t count = 1000;
+  float radius = 3;
+  float least_alpha = 0;
+  float opaque_below = 0.001f;
+};
+
+template <>
+inline constexpr auto kEnumNames<GaussiansConfig::Geometry> = [] {
+  using enum GaussiansConfig::Geometry;
+  return names<GaussiansConfig::Geometry>({{kEllipsoids, "ellipsoids"}, {kTriangles, "triangles"}});
+}();
+
 struct SceneConfig {
   std::string file;
   std::optional<BuiltinScene> builtin;
@@ -98,6 +114,7 @@ struct SceneConfig {
   std::optional<AnimationConfig> animation;
   std::optional<SkyConfig> sky;
   std::vector<SceneObject> objects;
+  GaussiansConfig gaussians;
   ScenePlacement placement = ScenePlacement::kReplicated;
   std::int64_t quantise = 0;  ///< bits; 0: vertices stay where they are
 };
@@ -174,6 +191,20 @@ void describe(V& v, SceneObject& c) {
 }
 
 template <class V>
+void describe(V& v, GaussiansConfig& c) {
+  v.choice("geometry", c.geometry,
+           "The shapes that rays are tested against: an instance of one unit sphere for each Gaussian, or 20 triangles "
+           "around it.");
+  v.field("count", c.count, IntRange{1, 10'000'000}, "Gaussians", "The number of Gaussians of the built-in cloud.");
+  v.field("radius", c.radius, RealRange{0.1, 10}, "standard deviations",
+          "A Gaussian ends at this distance from its mean.");
+  v.field("least_alpha", c.least_alpha, RealRange{0, 0.5}, "",
+          "A Gaussian ends nearer to its mean where it would take less than this share of the light. 0: it does not.");
+  v.field("opaque_below", c.opaque_below, RealRange{0, 0.5}, "",
+          "A ray looks for no more Gaussians once less than this share of the light behind them reaches it.");
+}
+
+template <class V>
 void describe(V& v, SceneConfig& c) {
   v.field("file", c.file, "",
           "A file of glTF, or of OBJ, FBX, PLY, STL, COLLADA and other formats. Its path is relative to the config's "
@@ -188,7 +219,7 @@ void describe(V& v, SceneConfig& c) {
   v.field("levels", c.levels, IntRange{2, 8}, "levels",
           "With more than 2 the built-in scene of instances consists of groups, within groups down to this depth, each "
           "of them placed many times.");
-  v.field("seed", c.seed, kSeed, "", "The seed of the built-in spheres, terrain, instances, sliver and foliage.");
+  v.field("seed", c.seed, kSeed, "", "The seed of every built-in scene but cornell.");
   v.field("camera", c.camera, IntRange{0, 65535}, "", "The index of the camera among those of the scene.");
   v.field_or_auto("time", c.time, kMoment, "seconds",
                   "The moment at which a file is shown that has animations, skins or morph targets. All animations "
@@ -202,6 +233,7 @@ void describe(V& v, SceneConfig& c) {
       "A sky of one colour, or of an environment map. Without this key a built-in scene has its own sky, and a file "
       "has the default.");
   v.list("objects", c.objects, "Primitives of `primitives` that stand in the scene beside what it has.");
+  v.section("gaussians", c.gaussians, "Gaussians that the scene consists of, if any.");
   v.choice("placement", c.placement,
            "With engine.transport mpi each rank has the whole acceleration structure, or with partitioned that of its "
            "share of the meshes; packets then start where their shape is, and bring it along.");

@@ -32,4 +32,8 @@ ConfigText read_config_file(const std::filesystem::path& path);
 LocatedConfig load_config(const ConfigText& source, std::span<const std::string> sets = {},
                           const ValidateOptions& options = {});
 
+/// Throws a ConfigError for what must not be asked of a scene that consists of Gaussians, which is known once it is
+/// loaded.
+void require_for_gaussians(const Config& config, const KeyPositions& positions);
+
 }  // namespace carousel

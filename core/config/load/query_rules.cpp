@@ -1,9 +1,13 @@
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "core/config/load/feature_rules.h"
+#include "core/config/load/load.h"
 #include "core/config/machine_conditions.h"
+#include "core/system/error.h"
 
 namespace carousel::config {
 
@@ -30,20 +34,24 @@ void check_machine(const Config& c, const RuleBreach& breach) {
 
 /// A ray begins its next round where its walk ends, which takes a walk of its own.
 void check_rounds(const Config& c, const RuleBreach& breach) {
-  const std::string too_few =
-      fmt::format("with fewer than rays.query.nearest = {} a ray finds its hits in rounds; ", c.rays.query.nearest);
+  const QueryConfig& query = c.rays.query;
+  const bool given = query.buffer.has_value();
   const auto no = [&](bool wrong, const std::string& message) {
-    if (wrong) breach("rays.query.buffer", too_few + message + fmt::format("; found {}", *c.rays.query.buffer));
+    if (wrong)
+      breach(given ? "rays.query.buffer" : "rays.query.nearest",
+             fmt::format("with fewer than rays.query.nearest = {} a ray finds its hits in rounds; expected {}, or {}; "
+                         "found {}",
+                         query.nearest, given ? "auto" : "at most 64", message, given ? *query.buffer : query.nearest));
   };
   if (c.topology.shape == TopologyShape::kIndependent) {
-    no(c.engine.kind == EngineKind::kNative,
-       "expected auto, or engine.kind: cycle, which alone has independent resources with rounds");
-    no(conditions::has_warps(c), "expected auto, or testers.simt.warp: 0, as warps have no rounds yet");
+    no(c.engine.kind == EngineKind::kNative, "engine.kind: cycle, which alone has independent resources with rounds");
+    no(conditions::has_warps(c), "testers.simt.warp: 0, as warps have no rounds yet");
     return;
   }
   no(c.collections.traversal != Traversal::kOrdered || c.bvh.treelets.bytes > 0,
-     "expected auto, or collections.traversal: ordered without bvh.treelets.bytes, as a ray that waits for several "
-     "nodes at once does not know when a round ends");
+     "collections.traversal: ordered without bvh.treelets.bytes, as a ray that waits for several nodes at once does "
+     "not "
+     "know when a round ends");
 }
 
 }  // namespace
@@ -71,3 +79,28 @@ void check_query(const Config& c, const RuleBreach& breach) {
 }
 
 }  // namespace carousel::config
+
+namespace carousel {
+
+void require_for_gaussians(const Config& config, const KeyPositions& positions) {
+  std::vector<ConfigIssue> out;
+  const auto no = [&](bool wrong, const char* key, const std::string& message) {
+    if (wrong) out.push_back({positions.find(key), key, "the scene consists of Gaussians; " + message});
+  };
+  no(config.rays.query.nearest == 0, "rays.query.nearest",
+     "a ray blends the nearest hits that it finds; expected 1 to 65536, as {nearest: 4096, buffer: 16} has, found 0");
+  no(config.workload.kind != WorkloadConfig::Kind::kRays, "workload",
+     "they give light to camera rays alone; expected the rays of a picture");
+  no(config.verify == Verify::kReference, "verify",
+     "the reference knows surfaces alone; expected none, found reference");
+  no(config.frames && config.frames->count > 1, "frames.count",
+     fmt::format("they do not move; expected 1, found {}", config.frames ? config.frames->count : 1));
+  no(config.scene.quantise > 0, "scene.quantise",
+     fmt::format("their shapes stay where they are; expected 0, found {}", config.scene.quantise));
+  no(config.shading.camera_rays.cull == RayFlags::Cull::kFront, "shading.camera_rays.cull",
+     "rays meet them at their fronts; expected none or back, found front");
+  no(!config.bvh.file.empty(), "bvh.file", "trees of files are those of other meshes; expected none");
+  if (!out.empty()) throw ConfigError(std::move(out));
+}
+
+}  // namespace carousel

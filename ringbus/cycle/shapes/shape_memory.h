@@ -38,6 +38,7 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
+/// colour and opacity of its Gaussian if it stands for one, of groups and their members
 /// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
 /// nodes have 64 or 80 bytes, or 128 with 12 bits a plane, but for those that keep their boxes as floats
 /// (accel/builders/quantised_boxes.h), and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold
@@ -59,8 +60,9 @@ class ShapeMemory {
         strips_(bvh.leaves == BvhConfig::Leaves::kStrips ? LeafStrips(accel) : LeafStrips()),
         blocks_at_(aligned(accel.nodes.size() * node_bytes_ + bytes_behind_nodes(), accel.packed ? 128 : 64)),
         instances_at_(accel.pieces ? accel.pieces->bytes : (blocks_at_ + bytes_of_leaves() + 63) / 64 * 64),
-        instance_bytes_(accel::instance_bytes(accuracy)),
-        promoted_bytes_(accel::promoted_bytes(accuracy)),
+        look_bytes_(accel.gaussians ? accel.gaussians->bytes_in_instance() : 0),
+        instance_bytes_(accel::instance_bytes(accuracy) + look_bytes_),
+        promoted_bytes_(accel::promoted_bytes(accuracy) + look_bytes_),
         instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) +
                         (accel.groups.empty() ? 0 : accel::kMemberBytes + accel::kGroupBytes) + 63) /
                        64 * 64),
@@ -117,7 +119,10 @@ class ShapeMemory {
   }
 
   /// Bytes of the whole structure, with the gaps that alignment leaves.
-  std::uint64_t size_bytes() const { return instances_at_ + accel_.instances.size() * instance_room_; }
+  std::uint64_t size_bytes() const {
+    const std::uint64_t apart = accel_.gaussians && look_bytes_ == 0 ? accel_.gaussians->size_bytes() : 0;
+    return instances_at_ + accel_.instances.size() * instance_room_ + apart;
+  }
 
   /// How many boxes of the node `key` the lanes select; at least one.
   std::uint32_t boxes(accel::NodeKey key, std::uint32_t lanes) const {
@@ -268,6 +273,7 @@ class ShapeMemory {
   std::uint32_t node_bytes_;
   LeafStrips strips_;
   std::uint64_t blocks_at_, instances_at_;
+  std::uint32_t look_bytes_;  // of a Gaussian, in its instance
   std::uint32_t instance_bytes_, promoted_bytes_, instance_room_;
   std::uint32_t most_node_ = 0, most_leaf_ = 0;   // bytes of the longest strip that ends by its flag; 0: none does
   std::optional<accel::StructureDepths> depths_;  // of a structure that is here as a whole

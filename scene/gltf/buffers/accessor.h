@@ -44,7 +44,8 @@ enum class AccessorUse {
   kInverseBind,
   kTime,
   kTurn,  // a rotation of an animation
-  kMorphWeight
+  kMorphWeight,
+  kOpacity  // of Gaussians
 };
 
 /// The accessors of a file, each checked against its buffer views before anything is allocated for it.

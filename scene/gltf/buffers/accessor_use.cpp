@@ -51,6 +51,8 @@ void AccessorTable::check_type(std::size_t index, AccessorUse use, const std::st
         return {{"VEC4"}, true, true, false, false, Signs::kBoth};
       case AccessorUse::kMorphWeight:
         return {{"SCALAR"}, true, true, false, false, Signs::kBoth};
+      case AccessorUse::kOpacity:
+        return {{"SCALAR"}, true, true, false, false};
       case AccessorUse::kTime:
         return {{"SCALAR"}, true, false, false, false};
       case AccessorUse::kMorphPosition:

@@ -10,16 +10,13 @@ namespace carousel::scene {
 namespace {
 
 constexpr auto kRead = std::to_array<std::string_view>({
-    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",
-    "EXT_texture_webp",           "KHR_draco_mesh_compression",
-    "KHR_lights_punctual",        "KHR_materials_anisotropy",
-    "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
-    "KHR_materials_ior",          "KHR_materials_iridescence",
-    "KHR_materials_sheen",        "KHR_materials_specular",
-    "KHR_materials_transmission", "KHR_materials_unlit",
-    "KHR_materials_volume",       "KHR_mesh_quantization",
-    "KHR_meshopt_compression",    "KHR_node_visibility",
-    "KHR_texture_transform",
+    "EXT_mesh_gpu_instancing",    "EXT_meshopt_compression",    "EXT_texture_webp",
+    "KHR_draco_mesh_compression", "KHR_gaussian_splatting",     "KHR_lights_punctual",
+    "KHR_materials_anisotropy",   "KHR_materials_clearcoat",    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",          "KHR_materials_iridescence",  "KHR_materials_sheen",
+    "KHR_materials_specular",     "KHR_materials_transmission", "KHR_materials_unlit",
+    "KHR_materials_volume",       "KHR_mesh_quantization",      "KHR_meshopt_compression",
+    "KHR_node_visibility",        "KHR_texture_transform",
 });
 
 bool has_entries(const Json& json, const char* key) {

@@ -160,7 +160,11 @@ SchemaRule posed(SchemaRule rule) {
 }
 const SchemaRule kWeightList = posed(numbers("weights", 0));
 const SchemaRule kTargetList = posed({.key = "targets", .kind = K::kIndexMaps, .refers_to = "/accessors"});
-const Schema kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDracoPrimitive)};
+const Schema kGaussianSplatting{name_of("kernel", {"ellipse"}, true),
+                                name_of("colorSpace", {"srgb_rec709_display", "lin_rec709_display"}, true),
+                                name_of("projection", {"perspective"}), name_of("sortingMethod", {"cameraDistance"})};
+const Schema kPrimitiveExtensions{object("KHR_draco_mesh_compression", kDracoPrimitive),
+                                  object("KHR_gaussian_splatting", kGaussianSplatting)};
 const Schema kPrimitive{index_map("attributes", "/accessors"),
                         index("indices", "/accessors"),
                         index("material", "/materials"),

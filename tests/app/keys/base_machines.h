@@ -21,7 +21,8 @@ enum class BaseMachine {
   kNative,      ///< run by the native engine
   kTraffic,     ///< synthetic traffic
   kLinks,       ///< with faults of links
-  kOwn          ///< a primitive with a program
+  kOwn,         ///< a primitive with a program
+  kGaussians    ///< a cloud of Gaussians
 };
 
 /// Instructions that find the way into a ball around the origin, of all classes.
@@ -78,6 +79,13 @@ inline std::string text(BaseMachine machine) {
              "primitives:\n  NAME:\n    bounds: {low: [-0.6, -0.6, -0.6], high: [0.6, 0.6, 0.6]}\n"
              "    parameters: {r: 0.5}\n    program:\n" +
              ball_program() + slots + cycle;
+    case BaseMachine::kGaussians:
+      return "scene: {builtin: gaussians, gaussians: {count: 150}}\n"
+             "rays: {slots_per_resource: 32, query: {nearest: 200, buffer: 8}}\n"
+             "engine: {kind: cycle, threads: 1, what_if: false}\n"
+             "image: {width: 12, height: 8, samples: 1, max_depth: 3}\n"
+             "topology: {resources: 4}\npackets: {rays: 8}\n"
+             "collections: {ready: 8, capacity: 16384, traversal: ordered}\n";
   }
   return {};
 }

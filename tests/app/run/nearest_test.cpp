@@ -149,8 +149,12 @@ TEST(Nearest, RefusesWhatIsNotBuilt) {
   Program program;
   program.write("rays.yaml", "scene: {builtin: cornell}\nrays: {query: {nearest: 8}}\nengine: {kind: cycle}\n");
   const std::vector<std::pair<std::string, std::string>> refused{
-      {"rays.query.nearest=65", "rays.query.nearest: expected an integer from 0 to 64"},
+      {"rays.query.nearest=65537", "rays.query.nearest: expected an integer from 0 to 65536"},
+      {"rays.query.nearest=100 rays.query.buffer=65", "rays.query.buffer: expected"},
       {"rays.query.buffer=9", "rays.query.buffer: no ray has more hits than rays.query.nearest = 8"},
+      {"rays.query.nearest=65",
+       "rays.query.nearest: with fewer than rays.query.nearest = 65 a ray finds its hits in rounds; "
+       "expected at most 64, or collections.traversal: ordered"},
       {"rays.query.buffer=2", "expected auto, or collections.traversal: ordered"},
       {"rays.query.buffer=2 topology.shape=independent testers.simt.warp=8", "testers.simt.warp: 0"},
       {"bundles.size=8", "bundles.size: rays of bundles share one bound"},

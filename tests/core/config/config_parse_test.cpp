@@ -99,7 +99,7 @@ bundles: {size: 1}
   EXPECT_EQ(texts(issues),
             (std::vector<std::string>{
                 "test.yaml: scene: expected a scene: file, or builtin (cornell, spheres, terrain, instances, "
-                "sliver, foliage)",
+                "sliver, foliage, gaussians)",
                 "test.yaml:1:16: image.width: expected an integer from 1 to 16384 (pixels), found 0",
                 "test.yaml:1:27: image.height: expected an integer from 1 to 16384 (pixels), found 'tall'",
                 "test.yaml:2:1: topolgy: unknown key; did you mean 'topology'?",

@@ -17,10 +17,10 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         BadConfig{"NoScene", "image: {width: 4}\n",
                   "test.yaml: scene: expected a scene: file, or builtin (cornell, spheres, terrain, "
-                  "instances, sliver, foliage)"},
+                  "instances, sliver, foliage, gaussians)"},
         BadConfig{"EmptyScene", "image: {width: 4}\nscene: {seed: 3}\n",
                   "test.yaml:2:8: scene: expected a scene: file, or builtin (cornell, spheres, terrain, "
-                  "instances, sliver, foliage)"},
+                  "instances, sliver, foliage, gaussians)"},
         BadConfig{"TwoScenes", "scene: {file: a.glb, builtin: cornell}\n",
                   "test.yaml:1:31: scene.builtin: expected either file or builtin, found both; another scene takes the "
                   "place of both with --set 'scene={file: NAME}'"},
@@ -190,7 +190,7 @@ TEST(ConfigRules, ASetMayBeTheWholeCache) {
 TEST(ConfigRules, AFieldThatCannotBeReadIsNotJudgedByItsDefault) {
   EXPECT_THAT(texts(issues_of("scene: {builtin: 5}\n")),
               testing::ElementsAre("test.yaml:1:18: scene.builtin: expected one of cornell, spheres, terrain, "
-                                   "instances, sliver, foliage, found 5"));
+                                   "instances, sliver, foliage, gaussians, found 5"));
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
-namespace carousel::shading {
+namespace carousel {
 
 // Written here, because glibc's expf and powf use fused multiply-add where the machine has it, and their last bit may
 // then differ. The functions are evaluated in double with an error of about 1e-9, and rounded to float once.
@@ -45,4 +45,4 @@ inline float pow_float(float x, float y) {
   return x > 0.0f ? exp2_float(log2_double(double{x}) * double{y}) : 0.0f;
 }
 
-}  // namespace carousel::shading
+}  // namespace carousel
