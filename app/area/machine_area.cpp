@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "core/config/costs.h"
-#include "core/config/graph/ring.h"
 #include "core/config/load/validate.h"
 #include "core/config/own_sections.h"
 #include "core/program/program.h"
@@ -169,11 +168,10 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     const PartArea each = P::area(keys, costs_of(c));
     parts.declared[i] = {static_cast<double>(caches) * each.size, static_cast<double>(caches) * each.mm2};
   });
-  double ring_mm = 0;
-  for (const double mm : ringbus::stop_ring_lengths(c.topology, out.link_mm)) ring_mm += mm;
-  if (const auto ring = config::stop_ring_entry(c.topology))
-    ring_mm *= static_cast<double>(c.topology.links[*ring].bytes_per_cycle.value_or(c.topology.link.bytes_per_cycle)) /
-               static_cast<double>(c.topology.link.bytes_per_cycle);
+  double ring_mm = 0;  // as wide as topology.link
+  for (const ringbus::StopRingWire& wire : ringbus::stop_ring_wires(c.topology, out.link_mm))
+    ring_mm +=
+        wire.mm * static_cast<double>(wire.bytes_per_cycle) / static_cast<double>(c.topology.link.bytes_per_cycle);
   report::AreaOf& wires = parts[AreaPart::kWires];
   const std::int64_t width = c.topology.link.bytes_per_cycle;
   wires.size =

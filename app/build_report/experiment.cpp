@@ -137,7 +137,7 @@ report::Report run_network(const Prepared& p, const InterruptScope& interrupt, b
     if (line) line->update(report::ratio(packets, p.config().workload.traffic.packets), packets, "packets");
   };
   const Config& c = p.config();
-  const auto ring = config::stop_ring_entry(c.topology);
+  const auto ring = config::lone_stop_ring_entry(c.topology);
   if (!ring) return traffic_report(p, ringbus::run_traffic(c, options));
   const auto clock =
       ringbus::MachineClocks(c.engine.clock_mhz, c.clocks.synchroniser_cycles).from_core(c.topology.links[*ring].mhz);

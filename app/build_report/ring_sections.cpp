@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <chrono>
 
+#include <fmt/format.h>
+
 #include "app/build_report/nodes_section.h"
 #include "core/config/config.h"
 #include "core/config/graph/clocks.h"
@@ -131,15 +133,9 @@ void add_ray_queues(report::Report& r, const ringbus::RunResult& result, const C
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   const ringbus::Topology topology(config.topology);
-  std::optional<std::uint64_t> ring;  // the number of a ring with stops in the drawing
-  if (config::stop_ring_entry(config.topology)) ring = drawing(config.topology, true)->size() - 1;
   for (const ringbus::LinkResult& link : result.links) {
     const ringbus::LinkStatistics& s = link.statistics;
-    const bool port = ring && r.links->size() < topology.wires().size();
-    const auto number = [&](ResourceId node) -> std::uint64_t {
-      return port && node.value >= topology.resources() ? *ring : node.value;
-    };
-    r.links->push_back({number(link.from), number(link.to), link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
+    r.links->push_back({link.from.value, link.to.value, link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
                         s.occupancy_max, s.refusals});
     report::Link& out = r.links->back();
     if (config.faults.links.any()) out.faults = link.faults;
@@ -194,7 +190,24 @@ std::optional<std::vector<report::DrawnNode>> drawing(const TopologyConfig& topo
     one.x_mm = node.at.x;
     one.y_mm = node.at.y;
   }
-  if (rays && config::stop_ring_entry(topology)) out.push_back({"ring"});  // to which the ports of the stops lead
+  if (!rays && config::lone_stop_ring_entry(topology)) return out;
+  // The ports of the stops lead to their ring, a node behind all others, in the middle of its stops.
+  const std::vector<config::StopRing> rings = config::stop_rings(topology, graph);
+  for (const config::StopRing& ring : rings) {
+    report::DrawnNode& one =
+        out.emplace_back(report::DrawnNode{rings.size() == 1 ? "ring" : fmt::format("ring[{}]", &ring - rings.data())});
+    GraphPoint sum;
+    bool placed = true;
+    for (const std::uint32_t stop : ring.nodes) {
+      const GraphPoint& at = graph.nodes[stop].at;
+      placed = placed && at.given;
+      sum.x += at.x;
+      sum.y += at.y;
+    }
+    if (!placed) continue;
+    one.x_mm = sum.x / static_cast<double>(ring.nodes.size());
+    one.y_mm = sum.y / static_cast<double>(ring.nodes.size());
+  }
   return out;
 }
 

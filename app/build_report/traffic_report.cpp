@@ -58,16 +58,12 @@ report::Traffic traffic(const Config& config, const ringbus::TrafficResult& resu
 
 std::vector<report::Link> links(const Config& config, const ringbus::TrafficResult& result) {
   std::vector<report::Link> out;
-  // A link between stops holds a flit for each cycle of its latency.
-  const TopologyConfig& topology = config.topology;
-  const std::int64_t depth =
-      result.stops ? topology.links.front().latency_cycles.value_or(topology.link.latency_cycles) : topology.link.depth;
   for (std::size_t i = 0; i < result.links.size(); ++i) {
     const ringbus::cycle::LinkUse& link = result.links[i];
     report::Link& one = out.emplace_back();
     one.from = link.from;
     one.to = link.to;
-    one.depth = static_cast<std::uint64_t>(depth);
+    one.depth = result.link_depths[i];
     one.packets = result.link_packets[i];
     const std::uint64_t cycles = result.link_cycles[i];
     if (several_clocks(config)) one.clock = clock_of_link(config, link.mhz);

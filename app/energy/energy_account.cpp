@@ -35,10 +35,8 @@ std::vector<double> lengths(const Config& c, const ringbus::ParcelPlan& drawn, d
   const ringbus::Topology topology(c.topology);
   std::vector<double> out;
   for (const ringbus::Topology::Wire& wire : topology.wires()) out.push_back(wire_length(topology, wire, link_mm));
-  if (const std::vector<double> ring = ringbus::stop_ring_lengths(c.topology, link_mm); !ring.empty())
-    out.insert(out.end(), ring.begin(), ring.end());
-  else
-    for (const config::Graph::Link& link : drawn.without_packets()) out.push_back(drawn.length(link, link_mm));
+  for (const config::Graph::Link& link : drawn.without_packets()) out.push_back(drawn.length(link, link_mm));
+  for (const ringbus::StopRingWire& wire : ringbus::stop_ring_wires(c.topology, link_mm)) out.push_back(wire.mm);
   return out;
 }
 

@@ -105,13 +105,13 @@ inline constexpr Condition kTrafficAnywhere{[](const C& c, const S&) {
 inline constexpr Condition kReplies{[](const C& c, const S&) { return c.workload.traffic.reply_bytes > 0; },
                                     "packets call for no answers"};
 inline constexpr Condition kQueuedStops{
-    [](const C& c, const S&) { return !config::stop_ring_entry(c.topology).has_value(); },
+    [](const C& c, const S&) { return !config::lone_stop_ring_entry(c.topology).has_value(); },
     "nothing waits on a ring with stops"};
 inline constexpr Condition kQueuedPorts{
-    [](const C& c, const S&) { return meets_rays(c) || !config::stop_ring_entry(c.topology).has_value(); },
+    [](const C& c, const S&) { return meets_rays(c) || !config::lone_stop_ring_entry(c.topology).has_value(); },
     "nothing waits on a ring with stops"};
 inline constexpr Condition kSeveralParts{
-    [](const C& c, const S&) { return meets_rays(c) || !config::stop_ring_entry(c.topology).has_value(); },
+    [](const C& c, const S&) { return meets_rays(c) || !config::lone_stop_ring_entry(c.topology).has_value(); },
     "the stops of a ring are clocked together, on one thread"};
 inline constexpr Condition kNetworkClock{[](const C& c, const S&) {
                                            return c.engine.kind == EngineKind::kCycle &&

@@ -24,7 +24,8 @@ struct RingStopsUse {
 
 template <class V>
 void describe(V& v, const RingStopsUse& r) {
-  v.field("extra_rounds", r.extra_rounds, "flits", "flits that found the port of their stop busy and went round again");
+  v.field("extra_rounds", r.extra_rounds, "flits",
+          "flits that found the port of their stop busy, or no place behind it, and went round again");
   v.field("longest_ride", r.longest_ride, "cycles", "longest time from a flit's getting on until it got off");
   v.field("longest_wait", r.longest_wait, "cycles",
           "longest time that a packet, or a flit of it, that was the first at its stop waited to get on");

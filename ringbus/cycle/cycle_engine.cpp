@@ -186,8 +186,8 @@ class CycleRun {
       s.packets = port.packets();
       out.links.push_back({wire.from, wire.to, static_cast<std::size_t>(wire.depth), s, {}, port.faults()});
     });
-    add_ring(end, out);
     add_parcels(end, out);
+    add_rings(end, out);
     c.memories = machine_.memory().memories().size();
     if (const RayData* data = machine_.shading().ray_data()) c.ray_data = data->bytes();
     if (config_.bvh.leaves == BvhConfig::Leaves::kStrips) c.strips = machine_.shapes().strips().counts();
@@ -214,21 +214,19 @@ class CycleRun {
     return out;
   }
 
-  /// The links between the stops of a ring follow the ports of its stops.
-  void add_ring(Cycle end, RunResult& out) const {
-    const RingHub* const ring = machine_.network().ring();
-    if (ring == nullptr) return;
+  /// The links between the stops of rings follow all others.
+  void add_rings(Cycle end, RunResult& out) const {
     CycleResult& c = *out.cycle;
-    c.stops = ring->use();
-    for (std::size_t i = 0; i < ring->graph().links.size(); ++i) {
-      const config::Graph::Link& drawn = ring->graph().links[i];
-      const RingLinks::Use& use = ring->links().all()[i];
-      const Cycle busy = machine_.network().clocks().from_core(drawn.mhz).before(use.busy);
-      const std::uint64_t bytes = use.busy * static_cast<std::uint64_t>(drawn.bytes_per_cycle);
-      c.links.push_back({drawn.from, drawn.to, {std::min(busy, end), 0}, {}, bytes, drawn.mhz});
-      LinkStatistics s;
-      s.packets = use.packets;
-      out.links.push_back({ResourceId(drawn.from), ResourceId(drawn.to), 0, s, {}, {}});
+    for (const RingHub* ring : machine_.network().rings()) {
+      (c.stops ? *c.stops : c.stops.emplace()) += ring->docks().fabric().use();
+      ring->for_each_link([&](const config::Graph::Link& drawn, const RingLinks::Use& use) {
+        const Cycle busy = machine_.network().clocks().from_core(drawn.mhz).before(use.busy);
+        const std::uint64_t bytes = use.busy * static_cast<std::uint64_t>(drawn.bytes_per_cycle);
+        c.links.push_back({drawn.from, drawn.to, {std::min(busy, end), 0}, {}, bytes, drawn.mhz});
+        LinkStatistics s;
+        s.packets = use.packets;
+        out.links.push_back({ResourceId(drawn.from), ResourceId(drawn.to), 0, s, {}, {}});
+      });
     }
   }
 

@@ -13,6 +13,7 @@
 #include "ringbus/topology/graph/dependencies.h"
 #include "ringbus/topology/graph/routes.h"
 #include "ringbus/topology/graph_facts.h"
+#include "ringbus/topology/graph_wires.h"
 #include "ringbus/topology/rounds.h"
 #include "ringbus/topology/shapes.h"
 
@@ -27,30 +28,6 @@ std::vector<Routes> routes_of(const Graph& graph) {
   std::vector<Routes> out;
   for (std::size_t lane = 0; lane < graph.lanes; ++lane) out.emplace_back(graph, lane);
   return out;
-}
-
-std::uint16_t direction_of(const Graph::Link& link) {
-  return static_cast<std::uint16_t>(std::max<std::int64_t>(0, link.lane));
-}
-
-/// The exits of all nodes towards all resources, lane by lane.
-std::vector<TopologyPlan::Exit> exits_of(const Graph& graph, const std::vector<Routes>& routes) {
-  std::vector<std::uint16_t> ports(graph.links.size()), links_of(graph.nodes.size());
-  std::vector<std::uint32_t> in_order(graph.links.size());
-  std::iota(in_order.begin(), in_order.end(), 0u);
-  std::ranges::sort(in_order, {}, [&](std::uint32_t link) {
-    return std::pair(direction_of(graph.links[link]), graph.links[link].to);
-  });
-  for (const std::uint32_t i : in_order) ports[i] = links_of[graph.links[i].from]++;
-  std::vector<TopologyPlan::Exit> exits(graph.nodes.size() * graph.lanes * graph.resources);
-  for (std::uint32_t at = 0; at < graph.nodes.size(); ++at)
-    for (std::size_t lane = 0; lane < graph.lanes; ++lane)
-      for (std::uint32_t to = 0; to < graph.resources; ++to) {
-        const std::uint32_t i = routes[lane].link(at, to);
-        if (i == Routes::kNone) continue;
-        exits[(at * graph.lanes + lane) * graph.resources + to] = {ports[i], goes_through(graph, routes[lane], i, to)};
-      }
-  return exits;
 }
 
 /// A round from the first resource to the nearest that is left, and so on, by the cycles of the way; of equally near
@@ -85,38 +62,57 @@ std::vector<ResourceId> nearest_round(const Graph& graph, const Routes& routes) 
 /// Links between two resources, there and back, that hold no more than `enough` packets: the smallest circles there
 /// are.
 std::vector<std::uint32_t> there_and_back(const Graph& graph, const Routes& routes,
+                                          const std::vector<config::StopRing>& rings,
                                           const std::vector<std::uint64_t>& places, std::uint64_t enough) {
+  const auto rides = [&](std::uint32_t link) {  // where nothing waits for the link behind it
+    return std::ranges::any_of(rings, [&](const config::StopRing& ring) { return ring.owns(link); });
+  };
   for (std::uint32_t i = 0; i < graph.links.size(); ++i) {
     const Graph::Link& link = graph.links[i];
-    if (link.from >= graph.resources || link.to >= graph.resources) continue;
+    if (link.from >= graph.resources || link.to >= graph.resources || rides(i)) continue;
     if (!graph.packets_go(link.from, link.to) || routes.link(link.from, link.to) != i) continue;
     const std::uint32_t back = routes.link(link.to, link.from);
-    if (back != Routes::kNone && graph.links[back].to == link.from && places[i] + places[back] <= enough)
+    if (back != Routes::kNone && !rides(back) && graph.links[back].to == link.from &&
+        places[i] + places[back] <= enough)
       return {i, back};
   }
   return {};
 }
 
+/// The most places that a router can be given.
+constexpr std::int64_t kMaxPlaces = 65536;
+
 /// Judges packets that visit resources: by the circles of links that wait for one another, and what these hold. Lanes
 /// that have no links in common do not wait for one another, so a circle is in one of them.
 class VisitJudge {
  public:
-  VisitJudge(const TopologyConfig& config, const Graph& graph, const std::vector<Routes>& routes, TopologyPlan& plan)
+  VisitJudge(const TopologyConfig& config, const Graph& graph, const std::vector<config::StopRing>& rings,
+             const std::vector<Routes>& routes, TopologyPlan& plan)
       : config_(config),
         graph_(graph),
+        rings_(rings),
         routes_(routes),
         plan_(plan),
         each_(plan.packets_in_flight * (graph.lanes_meet() ? graph.lanes : 1)),
         issuers_(graph.issuers().size()),
         on_the_way_(each_ * issuers_) {
     for (const Graph::Link& link : graph.links) places_.push_back(static_cast<std::uint64_t>(link.depth) + 1);
+    // A ring that is stuck is full, and so are the wire to it, the queue of a router where packets get off, and the
+    // wire from there.
+    for (const config::StopRing& ring : rings) {
+      std::int64_t least = config.link.depth + kMaxPlaces;
+      for (const std::uint32_t stop : ring.nodes)
+        least = std::min(least, graph.nodes[stop].drawn->buffers.value_or(least));
+      for (std::size_t i = ring.first; i < ring.first + ring.links(); ++i)
+        places_[i] = 2 * static_cast<std::uint64_t>(config.link.depth) + 2 + static_cast<std::uint64_t>(least);
+    }
   }
 
   /// Fills in the verdict, and whether resources need room for all packets.
   void judge() {
     std::vector<std::uint32_t> circle;
     for (std::size_t lane = 0; lane < graph_.lanes && circle.empty() && config_.visit == Visit::kOwners; ++lane)
-      circle = there_and_back(graph_, routes_[lane], places_, on_the_way_);
+      circle = there_and_back(graph_, routes_[lane], rings_, places_, on_the_way_);
     if (circle.empty()) circle = smallest(true);
     if (keeps(circle)) return;
     if (config_.flow == Flow::kNone) {
@@ -152,6 +148,7 @@ class VisitJudge {
       waits.join(
           visit_dependencies(graph_, routes_[lane], config_.visit == Visit::kAll ? round : round.first(0), bounded));
     }
+    join_stop_rings(waits, graph_, rings_, few_places(graph_));
     return waits.smallest_circle(places_, on_the_way_);
   }
   std::uint64_t held(const std::vector<std::uint32_t>& circle) const {
@@ -168,7 +165,7 @@ class VisitJudge {
   std::string named(const std::vector<std::uint32_t>& circle) const { return circle_text(graph_, circle); }
   /// The links of each lane are one ring: as many as nodes, all of which are resources that reach one another.
   bool is_rings() const {
-    if (graph_.nodes.size() != graph_.resources || graph_.lanes_meet()) return false;
+    if (graph_.nodes.size() != graph_.resources || graph_.lanes_meet() || !rings_.empty()) return false;
     std::vector<std::uint32_t> links(graph_.lanes);
     for (const Graph::Link& link : graph_.links) ++links[direction_of(link)];
     return std::ranges::all_of(links, [&](std::uint32_t count) { return count == graph_.resources; });
@@ -194,6 +191,7 @@ class VisitJudge {
 
   const TopologyConfig& config_;
   const Graph& graph_;
+  const std::vector<config::StopRing>& rings_;
   const std::vector<Routes>& routes_;  // by lane
   TopologyPlan& plan_;
   std::uint64_t each_;  // packets of a resource that may be in a circle
@@ -214,75 +212,27 @@ void plan_the_bus(const TopologyConfig& config, TopologyPlan& plan) {
                             "bus brings is always taken in"};
 }
 
-/// A ring whose stops have no queues: a star whose middle is the ring.
-TopologyPlan plan_stop_ring(const TopologyConfig& config, const Graph& graph, const Routes& routes) {
-  const config::StopRing ring = config::stop_ring(config, graph);
-  TopologyPlan plan;
-  plan.successors = {config.tour == Tour::kNearest ? nearest_round(graph, routes) : round_in_steps(config, 1)};
-  const ResourceId hub(graph.resources);
-  const auto wire = [&](ResourceId from, ResourceId to) {
-    TopologyPlan::Wire& one = plan.wires.emplace_back();
-    one.from = from;
-    one.to = to;
-    one.depth = config.link.depth;
-    one.bytes_per_cycle = ring.drawn->stops.port_bytes_per_cycle.value_or(ring.bytes_per_cycle);
-    one.mm = 0;  // a stop stands beside its resource
-    one.mhz = ring.drawn->mhz;
-  };
-  for (std::uint32_t r = 0; r < graph.resources; ++r) wire(ResourceId(r), hub);
-  for (std::uint32_t r = 0; r < graph.resources; ++r) wire(hub, ResourceId(r));
-  for (std::uint32_t r = 0; r < graph.resources; ++r)  // by the one port of each, and then from the ring
-    for (std::uint32_t to = 0; to < graph.resources; ++to) plan.exits.push_back({0, true});
-  for (std::uint32_t to = 0; to < graph.resources; ++to) plan.exits.push_back({static_cast<std::uint16_t>(to), true});
-  plan.routed = true;
-  plan.hubs = {TopologyPlan::Hub::kRing};
-  plan.hub_places = {0};
-  plan.claim_cycles.resize(graph.resources + 1u);
-  plan.node_mhz.resize(graph.resources + 1u);
-  plan.node_mhz.back() = ring.drawn->mhz;
-  plan.packets_in_flight = packets_in_flight(config);
-  plan.verdict = stop_ring_verdict(ring.drawn->stops);
-  return plan;
-}
-
 }  // namespace
 
 TopologyPlan plan_graph(const TopologyConfig& config) {
   const Graph graph = draw_checked(config);
   const std::vector<Routes> routes = routes_of(graph);
-  if (config::stop_ring_entry(config)) return plan_stop_ring(config, graph, routes.front());
+  const std::vector<config::StopRing> rings = config::stop_rings(config, graph);
   TopologyPlan plan;
   for (const Routes& of_lane : routes)
     plan.successors.push_back(config.tour == Tour::kNearest ? nearest_round(graph, of_lane)
                                                             : round_in_steps(config, 1));
-  for (const Graph::Link& link : graph.links) {
-    const Graph::Node &from = graph.nodes[link.from], &to = graph.nodes[link.to];
-    TopologyPlan::Wire& wire = plan.wires.emplace_back();
-    wire.from = ResourceId(link.from);
-    wire.to = ResourceId(link.to);
-    wire.direction = direction_of(link);
-    wire.latency_cycles = link.latency_cycles;
-    wire.node_cycles = from.drawn->latency_cycles;
-    wire.depth = link.depth;
-    wire.bytes_per_cycle = link.bytes_per_cycle;
-    wire.credit_cycles = to.drawn->credit_cycles;
-    wire.mhz = link.mhz;
-    wire.queue = link.queue;
-    if (from.at.given && to.at.given) wire.mm = link_mm(graph, link);
-  }
+  plan_wires(config, graph, rings, routes, plan);
   plan.flits_apart =
+      rings.empty() &&
       std::ranges::all_of(
           graph.links, [&](const Graph::Link& link) { return link.bytes_per_cycle == config.link.bytes_per_cycle; }) &&
       std::ranges::all_of(graph.nodes, [](const Graph::Node& node) { return node.drawn->forward == Forward::kHead; });
-  plan.channels = plan_channels(config, graph, routes.front());
-  for (const Graph::Node& node : graph.nodes) {
-    plan.claim_cycles.push_back(static_cast<std::uint32_t>(node.drawn->claim_cycles));
-    plan.node_mhz.push_back(node.drawn->mhz);
-  }
-  for (std::size_t i = graph.resources; i < graph.nodes.size(); ++i) {
-    plan.hubs.push_back(TopologyPlan::Hub::kRouter);
-    plan.hub_places.push_back(static_cast<std::uint32_t>(graph.nodes[i].drawn->buffers.value_or(0)));
-  }
+  if (rings.empty())
+    plan.channels = plan_channels(config, graph, routes.front());
+  else  // which have no virtual channels
+    plan.channels = {.channels = std::vector<std::uint32_t>(plan.wires.size(), 1),
+                     .datelines = std::vector<bool>(plan.wires.size())};
   plan.packets_in_flight = packets_in_flight(config);
   plan.manager_of = graph.manager_of;
   if (graph.bus()) {
@@ -290,8 +240,12 @@ TopologyPlan plan_graph(const TopologyConfig& config) {
     return plan;
   }
   plan.routed = true;
-  plan.exits = exits_of(graph, routes);
-  VisitJudge(config, graph, routes, plan).judge();
+  if (config::lone_stop_ring_entry(config)) {
+    plan.verdict = {false, stop_rings_text(graph, rings)};
+    return plan;
+  }
+  VisitJudge(config, graph, rings, routes, plan).judge();
+  if (!rings.empty()) plan.verdict.rule += "; " + stop_rings_text(graph, rings);
   return plan;
 }
 

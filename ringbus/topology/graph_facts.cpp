@@ -139,33 +139,62 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   return facts;
 }
 
-DeadlockVerdict stop_ring_verdict(const RingStops& stops) {
+namespace {
+
+std::string stops_text(const RingStops& stops, bool few) {
   const bool slots = stops.rule == RingStops::Rule::kSlots;
   std::string rule =
       slots ? "slots: nothing waits on the ring, and a flit that finds its port busy goes round again, until it is the "
               "oldest at the latest"
             : "grants: a packet starts when its whole way is free, the port at its end included, and nothing waits on "
               "the ring";
+  if (few) rule += "; so does a packet that finds no place at a router, and the oldest of them gets the next";
   if (stops.fair_after_cycles == 0)
     rule += "; a stop may wait for as long as others keep its way full (fair_after_cycles: 0)";
   else
     rule += fmt::format("; no stop waits for ever, as after {} cycles it {}", stops.fair_after_cycles,
                         slots ? "marks a slot that no other stop may fill" : "gets the next grant of all");
-  return {false, std::move(rule)};
+  return rule;
+}
+
+}  // namespace
+
+std::vector<bool> few_places(const Graph& graph) {
+  std::vector<bool> out;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+    out.push_back(i >= graph.resources && graph.nodes[i].drawn->buffers.has_value());
+  return out;
+}
+
+std::string stop_rings_text(const Graph& graph, const std::vector<config::StopRing>& rings) {
+  const std::vector<bool> few = few_places(graph);
+  std::vector<std::string> texts;  // those that differ
+  for (const config::StopRing& ring : rings) {
+    std::string text =
+        stops_text(ring.drawn->stops, std::ranges::any_of(ring.nodes, [&](std::uint32_t stop) { return few[stop]; }));
+    if (std::ranges::find(texts, text) == texts.end()) texts.push_back(std::move(text));
+  }
+  return fmt::format("{}", fmt::join(texts, "; "));
 }
 
 DeadlockVerdict traffic_verdict(const TopologyConfig& config) {
-  if (const auto ring = config::stop_ring_entry(config)) return stop_ring_verdict(config.links[*ring].stops);
   const Graph graph = draw_checked(config);
+  const std::vector<config::StopRing> rings = config::stop_rings(config, graph);
+  if (config::lone_stop_ring_entry(config)) return {false, stop_rings_text(graph, rings)};
   const Routes routes(graph);
-  const std::vector<std::uint32_t> circle =
-      traffic_dependencies(graph, routes).smallest_circle(std::vector<std::uint64_t>(graph.links.size(), 1), 2);
+  Dependencies waits = traffic_dependencies(graph, routes);
+  join_stop_rings(waits, graph, rings, few_places(graph));
+  const std::vector<std::uint32_t> circle = waits.smallest_circle(std::vector<std::uint64_t>(graph.links.size(), 1), 2);
+  const std::string of_rings = rings.empty() ? "" : "; " + stop_rings_text(graph, rings);
   if (circle.empty())
     return {false, fmt::format("{}: the links of all ways can be put in an order in which every packet takes them, and "
-                               "the sink takes every packet in",
-                               config.routes == Routing::kUpDown ? "up_down" : "no circle")};
+                               "the sink takes every packet in{}",
+                               config.routes == Routing::kUpDown ? "up_down" : "no circle", of_rings)};
   const std::string full = fmt::format("a circle of {} links wait for one another when they are full ({})",
                                        circle.size(), circle_text(graph, circle));
+  if (!rings.empty())
+    return {true,
+            full + "; where packets get off a ring, routers with buffers: auto have room for all of them" + of_rings};
   const ChannelPlan plan = plan_channels(config, graph, routes);
   if (plan.rule == ChannelRule::kAny)
     return {true, full +

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config/graph/graph.h"
+#include "core/config/graph/ring.h"
 #include "ringbus/topology/graph/cuts.h"
 #include "ringbus/topology/plan.h"
 
@@ -46,8 +47,11 @@ struct GraphFacts {
 };
 GraphFacts graph_facts(const TopologyConfig& config);
 
-/// Why a ring whose stops have no queues cannot stop, and whether one of its stops may wait for ever.
-DeadlockVerdict stop_ring_verdict(const RingStops& stops);
+/// Why rings whose stops have no queues cannot stop by themselves, and whether one of their stops may wait for ever.
+std::string stop_rings_text(const config::Graph& graph, const std::vector<config::StopRing>& rings);
+
+/// By node: a packet that gets off a ring there may wait for a place.
+std::vector<bool> few_places(const config::Graph& graph);
 
 /// Whether packets with one destination each, as in synthetic traffic, can stop one another.
 DeadlockVerdict traffic_verdict(const TopologyConfig& config);

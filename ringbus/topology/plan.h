@@ -37,18 +37,27 @@ struct TopologyPlan {
     double mm = -1;                    ///< length along the axes of the die; negative: not known
     std::int64_t mhz = 0;              ///< of its clock; 0: that of the resources
     std::optional<QueueKind> queue{};  ///< of the native engine; absent: as topology.link says
+    std::uint32_t places = 0;          ///< egress places before it; 0: as its first node has
   };
 
   /// A node that is no resource.
   enum class Hub : std::uint8_t {
     kBus,     ///< one medium for all: it moves one packet at a time, straight to its next stop
     kRouter,  ///< passes packets on to the port that `exits` names
-    kRing,    ///< a ring whose stops have no queues, with a port for each resource
+    kRing,    ///< a ring whose stops have no queues, with a port for each of these
   };
   /// The way out of a node towards a resource.
   struct Exit {
     std::uint16_t port = 0;
     bool through = false;  ///< the next node sends a packet on as soon as its head has come
+  };
+
+  /// The ways over a ring whose stops have no queues.
+  struct StopRing {
+    bool both = false;                  ///< packets take the shorter way; else there is one direction
+    std::vector<std::uint32_t> stops;   ///< nodes, in the order of the ring
+    std::vector<std::uint32_t> places;  ///< by node: its place among these, or as many as there are
+    std::vector<ResourceId> off;        ///< by place, then resource: the stop where packets for it leave the ring
   };
 
   /// By direction, then by resource: the node that comes next on the round of that direction. A packet keeps its
@@ -62,11 +71,12 @@ struct TopologyPlan {
   /// of the round; with `topology.visit: owners` those that own none of the members are left out. Ports are counted in
   /// the order of lanes, and then of the nodes at the other ends of their links.
   bool routed = false;
-  std::vector<Exit> exits;
+  std::vector<Exit> exits;  ///< nothing at rings, whose ways are theirs
   /// Every node has egress places for all packets there are, so that no link waits for another.
   bool room_for_all = false;
   std::vector<std::uint32_t> hub_places;  ///< egress places of hubs for each port; 0, or empty: room for all packets
   std::vector<Hub> hubs;
+  std::vector<StopRing> rings;  ///< of the hubs of that kind, which are the last
   /// By resource: the packet process that issues the packets of its rays, itself for one of these, which has no rays.
   /// Empty: every resource issues packets, of whatever rays.
   std::vector<std::uint32_t> manager_of;

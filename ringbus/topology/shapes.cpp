@@ -46,6 +46,7 @@ TopologyPlan plan_topology(const TopologyConfig& config) {
   if (config.resources == 1) {
     plan.wires.clear();
     plan.hubs.clear();
+    plan.rings.clear();
     plan.routed = false;
     plan.exits.clear();
     plan.verdict = {false, "one resource: packets are tested where they are issued, there are no links"};

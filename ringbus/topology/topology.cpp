@@ -16,7 +16,7 @@ Topology::Topology(const TopologyConfig& config)
       has_widths_(
           std::ranges::any_of(plan_.wires,
                               [&](const Wire& wire) { return wire.bytes_per_cycle != config.link.bytes_per_cycle; }) ||
-          std::ranges::count(plan_.hubs, Hub::kRing) > 0),  // which sends packets on flit by flit
+          !plan_.rings.empty()),  // which send packets on flit by flit
       ports_(resources_ + plan_.hubs.size()) {
   for (const std::vector<ResourceId>& round : plan_.successors)
     successors_.insert(successors_.end(), round.begin(), round.end());
@@ -72,7 +72,16 @@ std::uint16_t Topology::links_between(std::size_t direction, ResourceId from, Re
 
 Topology::Route Topology::routed_way(ResourceId from, ResourceId to) const {
   Route way;
-  for (ResourceId at = from; at != to; ++way.hops) at = plan_.wires[ports_[at.value].out[exit(at, to).port]].to;
+  for (ResourceId at = from; at != to; ++way.hops) {
+    const ResourceId before = at;
+    at = plan_.wires[ports_[at.value].out[exit(at, to).port]].to;
+    const TopologyPlan::StopRing* const over = ring(at);
+    if (over == nullptr) continue;
+    at = leaves_at(*over, before, to);
+    const std::uint32_t stops = static_cast<std::uint32_t>(over->stops.size());
+    const std::uint32_t ahead = (over->places[at.value] + stops - over->places[before.value]) % stops;
+    way.hops += static_cast<std::uint16_t>(1 + (over->both ? std::min(ahead, stops - ahead) : ahead));
+  }
   return way;
 }
 

@@ -51,6 +51,19 @@ class Topology {
   TopologyPlan::Exit exit(ResourceId node, ResourceId stop, std::size_t direction = 0) const {
     return plan_.exits[(node.value * directions() + direction) * std::size_t{resources_} + stop.value];
   }
+  /// A node that is a ring whose stops have no queues: nothing anywhere else.
+  const TopologyPlan::StopRing* ring(ResourceId node) const {
+    const std::size_t first = resources_ + plan_.hubs.size() - plan_.rings.size();
+    return node.value < first ? nullptr : &plan_.rings[node.value - first];
+  }
+  /// The number of such a node among the rings.
+  std::size_t ring_number(ResourceId node) const {
+    return node.value - (resources_ + plan_.hubs.size() - plan_.rings.size());
+  }
+  /// The stop at which a packet for `to` leaves the ring that it has got onto at the stop `from`.
+  ResourceId leaves_at(const TopologyPlan::StopRing& ring, ResourceId from, ResourceId to) const {
+    return ring.off[ring.places[from.value] * std::size_t{resources_} + to.value];
+  }
   /// The virtual channels of links, under synthetic traffic; only where packets are routed.
   const ChannelPlan& channels() const { return plan_.channels; }
   /// Flits of a packet go from node to node one by one; likewise.

@@ -49,17 +49,20 @@ double wire_length(const Topology& topology, const Topology::Wire& wire, double 
   return wire.mm >= 0 ? wire.mm : link_mm * links_long(topology, wire);
 }
 
-std::vector<double> stop_ring_lengths(const TopologyConfig& config, double between) {
-  std::vector<double> out;
+std::vector<StopRingWire> stop_ring_wires(const TopologyConfig& config, double between) {
+  std::vector<StopRingWire> out;
   if (!config::stop_ring_entry(config)) return out;
   const config::Graph graph = draw_checked(config);
-  for (const config::Graph::Link& link : graph.links) {
-    const bool placed = graph.nodes[link.from].at.given && graph.nodes[link.to].at.given;
-    const bool resources = link.from < graph.resources && link.to < graph.resources;
-    out.push_back(placed      ? link_mm(graph, link)
-                  : resources ? between * place_distance(graph.resources, link.from, link.to)
-                              : between);
-  }
+  for (const config::StopRing& ring : config::stop_rings(config, graph))
+    for (std::size_t i = ring.first; i < ring.first + ring.links(); ++i) {
+      const config::Graph::Link& link = graph.links[i];
+      const bool placed = graph.nodes[link.from].at.given && graph.nodes[link.to].at.given;
+      const bool resources = link.from < graph.resources && link.to < graph.resources;
+      const double mm = placed      ? link_mm(graph, link)
+                        : resources ? between * place_distance(graph.resources, link.from, link.to)
+                                    : between;
+      out.push_back({mm, link.bytes_per_cycle});
+    }
   return out;
 }
 

@@ -18,9 +18,14 @@ double wire_length(const Topology& topology, const Topology::Wire& wire, double 
 /// Likewise between two places on that grid, each of a resource.
 double place_distance(std::uint32_t resources, std::uint32_t from, std::uint32_t to);
 
-/// The lengths of the links between the stops of a ring without queues, in the order of its graph; none on any other
-/// network.
-std::vector<double> stop_ring_lengths(const TopologyConfig& config, double link_mm);
+/// A link between two stops of a ring without queues.
+struct StopRingWire {
+  double mm = 0;
+  std::int64_t bytes_per_cycle = 0;
+};
+
+/// The links between the stops of all such rings, ring by ring in the order of its graph; none on any other network.
+std::vector<StopRingWire> stop_ring_wires(const TopologyConfig& config, double link_mm);
 
 /// The lengths of all wires together, each times its width over `bytes_per_cycle`, which is positive. The medium of a
 /// bus counts once, as a wire of that width.

@@ -194,8 +194,10 @@ void describe(V& v, GraphNode& c) {
                   "The number of nodes of a group, called name[0] and on; auto is one node of that very name.");
   v.field("latency_cycles", c.latency_cycles, IntRange{0, 1'000'000}, "cycles",
           "The time that the node takes before a packet leaves by a link, besides the link's.");
-  v.field_or_auto("buffers", c.buffers, IntRange{1, 65536}, "packets",
-                  "The places of a router for each link that leaves it; auto is room for all packets there are.");
+  v.field_or_auto(
+      "buffers", c.buffers, IntRange{1, 65536}, "packets",
+      "The places of a router for each link that leaves it, and for packets that get off a ring of slots there; auto "
+      "is room for all packets there are.");
   v.choice("forward", c.forward,
            "A router sends a packet on when its head has come, if the next link is as wide, or the whole packet.");
   v.field("serves", c.serves, "",

@@ -16,15 +16,48 @@ std::optional<std::size_t> stop_ring_entry(const TopologyConfig& config) {
   return static_cast<std::size_t>(found - config.links.begin());
 }
 
-StopRing stop_ring(const TopologyConfig& config, const Graph& graph) {
-  StopRing ring;
-  ring.entry = *stop_ring_entry(config);
-  ring.drawn = &config.links[ring.entry];
-  const std::size_t step = ring.directions() * ring.rings();
-  for (std::size_t i = 0; i < graph.links.size(); i += step) ring.nodes.push_back(graph.links[i].from);
-  ring.latency_cycles = graph.links.front().latency_cycles;
-  ring.bytes_per_cycle = graph.links.front().bytes_per_cycle;
-  return ring;
+std::optional<std::size_t> lone_stop_ring_entry(const TopologyConfig& config) {
+  const std::optional<std::size_t> ring = stop_ring_entry(config);
+  const auto packets = std::ranges::count_if(
+      config.links, [](const GraphLink& link) { return std::ranges::count(link.carries, Carried::kPackets) > 0; });
+  return packets == 1 ? ring : std::nullopt;
+}
+
+std::vector<StopRing> stop_rings(const TopologyConfig& config, const Graph& graph) {
+  std::vector<StopRing> out;
+  if (config.shape != TopologyShape::kGraph) return out;
+  for (std::size_t i = 0; i < graph.links.size(); ++i) {
+    const Graph::Link& link = graph.links[i];
+    const GraphLink& drawn = config.links[link.entry];
+    if (!has_stops(drawn)) continue;
+    if (out.empty() || out.back().entry != link.entry) {
+      StopRing& ring = out.emplace_back();
+      ring.entry = link.entry;
+      ring.drawn = &drawn;
+      ring.first = i;
+      ring.latency_cycles = link.latency_cycles;
+      ring.bytes_per_cycle = link.bytes_per_cycle;
+    }
+    StopRing& ring = out.back();
+    if ((i - ring.first) % (ring.directions() * ring.rings()) == 0) ring.nodes.push_back(link.from);
+  }
+  return out;
+}
+
+std::vector<std::optional<std::size_t>> plain_stops(const TopologyConfig& config, const Graph& graph) {
+  std::vector<std::optional<std::size_t>> out(graph.nodes.size());
+  std::vector<bool> others(graph.nodes.size());
+  for (const Graph::Link& link : graph.links) {
+    if (!link.carries_any({Carried::kPackets})) continue;
+    const bool stops = has_stops(config.links[link.entry]);
+    for (const std::uint32_t node : {link.from, link.to}) {
+      others[node] = others[node] || !stops || out[node].value_or(link.entry) != link.entry;
+      if (stops) out[node] = link.entry;
+    }
+  }
+  for (std::size_t i = 0; i < out.size(); ++i)
+    if (others[i]) out[i].reset();
+  return out;
 }
 
 std::vector<std::uint32_t> named_resources(const TopologyConfig& config, const std::string& pattern,

@@ -1,7 +1,9 @@
 #include <cstdint>
+#include <map>
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -39,7 +41,7 @@ void check_stops(const RingStops& stops, const std::string& key, const RuleBreac
   only(!grants && stops.transfers.has_value(), "transfers", "grants");
 }
 
-/// The keys of a node where packets wait.
+/// A node at which there is nothing but a ring has no keys of a node where packets wait.
 void check_stop(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
   const auto none = [&](std::string_view name, std::int64_t found) {
     if (found > 0)
@@ -55,7 +57,23 @@ void check_stop(const GraphNode& node, const std::string& key, const RuleBreach&
     breach(key + ".forward", fmt::format("nothing waits at a stop; expected head, found {}", enum_name(node.forward)));
 }
 
-/// A ring with stops is the whole network, and its stops have no queues.
+/// The places of a router between rings. Packets of all other stops may have got off in part, and hold places until the
+/// rest of them has come, so there is one more at least, of a packet that goes on.
+void check_bridge(const Graph::Node& node, const config::StopRing& ring, const RuleBreach& breach) {
+  if (!node.drawn->buffers) return;
+  const std::string key = fmt::format("topology.nodes.{}.buffers", node.entry);
+  const auto stops = static_cast<std::int64_t>(ring.nodes.size());
+  if (ring.drawn->stops.rule == RingStops::Rule::kGrants)
+    breach(key, fmt::format("an arbiter knows no places of {}, and takes it that there are enough; expected auto, or "
+                            "rule: slots, found {}",
+                            node.name, *node.drawn->buffers));
+  else if (*node.drawn->buffers < stops)
+    breach(key, fmt::format("packets of all stops may have come to {} in part, each in a place of its own; expected "
+                            "{} or more, as many as the ring has stops, or auto; found {}",
+                            node.name, stops, *node.drawn->buffers));
+}
+
+/// The stops of a ring have no queues.
 void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
   const GraphLink& link = c.links[entry];
@@ -84,16 +102,55 @@ void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry
   only(link.virtual_channels.has_value(), "virtual_channels", "auto");
   only(link.dateline, "dateline", "false");
   only(link.carries != plain.carries, "carries", "[packets]");
-  if (c.links.size() > 1)
-    return breach(fmt::format("topology.links.{}", entry == 0 ? 1 : 0),
-                  fmt::format("a ring with rule: {} is the whole network; expected no other links", rule));
   std::set<std::uint32_t> stops;  // nodes that are missing have no link, which check_ways() says
-  for (const Graph::Link& one : graph.links) stops.insert(one.from);
-  for (std::size_t i = 0; i < c.nodes.size(); ++i) check_stop(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
+  std::size_t links = 0;
+  for (const Graph::Link& one : graph.links) {
+    if (one.entry != entry) continue;
+    stops.insert(one.from);
+    ++links;
+  }
   const std::size_t lanes = static_cast<std::size_t>(link.stops.rings) * (link.both ? 2 : 1);
-  if (stops.size() < 3 || graph.links.size() != stops.size() * lanes)
+  if (stops.size() < 3 || links != stops.size() * lanes)
     breach(key + ".ring", fmt::format("expected three nodes at least, each of them once, found {} nodes in {} steps",
-                                      stops.size(), graph.links.size() / lanes));
+                                      stops.size(), links / lanes));
+}
+
+/// Rings with stops and what they meet.
+void check_stop_rings(const Config& config, const Graph& graph, const RuleBreach& breach) {
+  const TopologyConfig& c = config.topology;
+  const auto first = stop_ring_entry(c);
+  if (!first) return;
+  for (std::size_t i = 0; i < c.links.size(); ++i) {
+    if (has_stops(c.links[i])) check_stop_ring(config, graph, i, breach);
+    if (c.links[i].lane || c.links[i].lanes > 1)
+      breach(fmt::format("topology.links.{}.{}", i, c.links[i].lane ? "lane" : "lanes"),
+             fmt::format("a drawing with a ring of stops has no lanes yet; expected {}, or rule: queues",
+                         c.links[i].lane ? "auto" : "1"));
+  }
+  std::set<std::size_t> checked;  // nodes of the configuration
+  const auto plain = plain_stops(c, graph);
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i)
+    if (const std::size_t entry = graph.nodes[i].entry; plain[i] && checked.insert(entry).second)
+      check_stop(c.nodes[entry], fmt::format("topology.nodes.{}", entry), breach);
+  std::map<std::uint32_t, const StopRing*> bridges;  // by node: the ring that asks for most
+  const std::vector<StopRing> rings = stop_rings(c, graph);
+  const auto asks_more = [](const StopRing& one, const StopRing& other) {
+    return std::pair(one.drawn->stops.rule, one.nodes.size()) > std::pair(other.drawn->stops.rule, other.nodes.size());
+  };
+  for (const StopRing& ring : rings)
+    for (const std::uint32_t node : ring.nodes)
+      if (node >= graph.resources && !plain[node])
+        if (const StopRing*& most = bridges[node]; most == nullptr || asks_more(ring, *most)) most = &ring;
+  for (const auto& [node, ring] : bridges) check_bridge(graph.nodes[node], *ring, breach);
+  if (lone_stop_ring_entry(c) || !has_traffic(config)) return;
+  if (c.channels != ChannelRule::kAny)
+    breach("topology.channels",
+           fmt::format("a ring with stops has no virtual channels; expected any, found {}", enum_name(c.channels)));
+  for (std::size_t i = 0; i < c.links.size(); ++i)
+    if (!has_stops(c.links[i]) && c.links[i].virtual_channels.value_or(c.link.virtual_channels) > 1)
+      return breach(c.links[i].virtual_channels ? fmt::format("topology.links.{}.virtual_channels", i)
+                                                : "topology.link.virtual_channels",
+                    "a drawing with a ring of stops has one channel a link yet; expected 1");
 }
 
 void check_traffic_ends(const Config& config, const RuleBreach& breach) {
@@ -114,10 +171,10 @@ void check_traffic_ends(const Config& config, const RuleBreach& breach) {
     breach("workload.traffic.pattern",
            fmt::format("exchange pairs the resources; expected an even number of them, or another pattern, found {}",
                        config.topology.resources));
-  if (traffic.reply_bytes > 0 && !stop_ring_entry(config.topology))
+  if (traffic.reply_bytes > 0 && !lone_stop_ring_entry(config.topology))
     breach("workload.traffic.reply_bytes",
-           fmt::format("answers are modelled on a ring with stops; expected 0, or stops: {{rule: slots}} at the ring "
-                       "of a graph, found {}",
+           fmt::format("answers are modelled on a ring with stops that is alone; expected 0, or stops: {{rule: slots}} "
+                       "at the only link of a graph, found {}",
                        traffic.reply_bytes));
 }
 
@@ -175,13 +232,20 @@ void check_clocked_parts(const Config& config, const RuleBreach& breach) {
              fmt::format("a bus moves its packets one after the other by the clock of the resources; expected core, "
                          "found {}",
                          link.clock.empty() ? "noc" : link.clock));
-  const auto ring = stop_ring_entry(c);
-  if (!ring) return;
-  for (std::size_t i = 0; i < c.nodes.size(); ++i)
-    if (!c.nodes[i].clock.empty() && mhz_of(c.nodes[i].mhz) != mhz_of(c.links[*ring].mhz))
-      breach(fmt::format("topology.nodes.{}.clock", i),
+  if (!stop_ring_entry(c)) return;
+  std::vector<GraphIssue> issues;  // check_rings() tells
+  const Graph graph = draw_graph(c, issues);
+  const auto plain = plain_stops(c, graph);
+  std::set<std::size_t> checked;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    const std::size_t entry = graph.nodes[i].entry;
+    const GraphNode& node = c.nodes[entry];
+    if (!plain[i] || node.clock.empty() || mhz_of(node.mhz) == mhz_of(c.links[*plain[i]].mhz)) continue;
+    if (checked.insert(entry).second)
+      breach(fmt::format("topology.nodes.{}.clock", entry),
              fmt::format("a stop goes by the clock of its ring; expected one of {} MHz, or none; found {}",
-                         mhz_of(c.links[*ring].mhz), c.nodes[i].clock));
+                         mhz_of(c.links[*plain[i]].mhz), node.clock));
+  }
 }
 
 void check_clocks(const Config& config, const RuleBreach& breach) {
@@ -216,7 +280,7 @@ void check_rings(const Config& config, const RuleBreach& breach) {
       check_stops(c.links[i].stops, fmt::format("topology.links.{}.stops", i), breach);
     std::vector<GraphIssue> issues;
     const Graph graph = draw_graph(c, issues);
-    if (const auto entry = stop_ring_entry(c); entry && issues.empty()) check_stop_ring(config, graph, *entry, breach);
+    if (issues.empty()) check_stop_rings(config, graph, breach);
   }
   if (has_traffic(config)) check_traffic_ends(config, breach);
   check_clocks(config, breach);

@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/ring.h"
 #include "core/system/error.h"
 #include "ringbus/topology/graph/routes.h"
 #include "ringbus/topology/graph_facts.h"
@@ -89,8 +90,9 @@ ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes) {
   std::uint32_t wires = 0;
   for (std::uint32_t i = 0; i < plan.graph.links.size(); ++i) {
     const Graph::Link& link = plan.graph.links[i];
-    // A single resource has no wires for packets.
-    const bool packets = link.carries_any({Carried::kPackets}) && config.resources > 1;
+    // A single resource has no wires for packets, and a ring whose stops have no queues has some of its own.
+    const bool packets =
+        link.carries_any({Carried::kPackets}) && config.resources > 1 && !config::has_stops(config.links[link.entry]);
     if (link.carries_any({Carried::kShapes, Carried::kNewRays, Carried::kCompletedRays}))
       plan.links.push_back({i, packets ? wires : ParcelPlan::kNone});
     wires += packets;

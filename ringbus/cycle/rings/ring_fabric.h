@@ -47,6 +47,10 @@ class RingFabric {
   /// The first cycle after the last step in which something happens; kNever when all is done.
   virtual Cycle next() const = 0;
   virtual void step(Cycle now) = 0;
+  /// What is under way goes round, so that each step counts, even if next() has no answer.
+  virtual bool rides() const { return false; }
+  /// A place has become free at a stop, after the step of `now`.
+  virtual void look_again(Cycle now) { static_cast<void>(now); }
 
   const RingLinks& links() const { return links_; }
   const StopRingUse& use() const { return use_; }

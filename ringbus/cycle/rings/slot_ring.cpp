@@ -14,15 +14,23 @@ SlotRing::SlotRing(const RingShape& shape, std::vector<RingEnd*> ends, RingLinks
       stops_(shape.stops) {}
 
 Cycle SlotRing::next() const {
-  // While flits are under way one gets off within a round: the port that another finds busy has just taken one.
+  // While flits are under way one gets off within a round, since the port that another finds busy has just taken one,
+  // unless none of them finds a place.
   const Cycle round = length_ + 2 * port_cycles_;
-  if (flying_.size() > unused_.size()) return now_ - moved_ > round ? kNever : now_ + 1;
+  const bool stuck = rides();
+  if (stuck && now_ - moved_ <= round) return now_ + 1;
   Cycle first = kNever;
-  for (const RingEnd* end : ends_) first = std::min(first, end->due());
+  for (const RingEnd* end : ends_)
+    if (const Cycle due = end->due(); !stuck || due > now_) first = std::min(first, due);
   return first == kNever ? first : std::max(first, now_ + 1);
 }
 
 void SlotRing::step(Cycle now) {
+  while (rides() && now_ + 1 < now) turn(now_ + 1);
+  turn(now);
+}
+
+void SlotRing::turn(Cycle now) {
   now_ = now;
   for (std::uint32_t stop = 0; stop < shape_.stops; ++stop) {
     get_off(stop, now);
@@ -40,12 +48,26 @@ SlotRing::Slot& SlotRing::slot(std::uint32_t lane, std::uint32_t stop, Cycle now
   return slots_[lane * length_ + (ahead ? place + length_ - turned : place + turned) % length_];
 }
 
+/// Tells whether a packet has a place at its stop, or may take one. If not, it may be the next that does.
+bool SlotRing::finds_place(std::uint32_t at, std::uint32_t packet) {
+  if (flying_[packet].has_place) return true;
+  std::uint32_t& line = stops_[at].first_in_line;
+  const bool first = line == kNone || line == packet || flying_[packet].began < flying_[line].began;
+  if (first && ends_[at]->has_place()) return true;
+  if (first) line = packet;
+  return false;
+}
+
 void SlotRing::get_off(std::uint32_t stop, Cycle now) {
   const Slot* second = nullptr;  // of those that come, after the oldest
   Slot* oldest = nullptr;
   for (std::uint32_t lane = 0; lane < shape_.lanes(); ++lane) {
     Slot& here = slot(lane, stop, now);
     if (here.packet == kNone || here.to != stop) continue;
+    if (!finds_place(stop, here.packet)) {
+      ++use_.extra_rounds;
+      continue;
+    }
     use_.extra_rounds += oldest != nullptr;
     if (oldest == nullptr || here.entered < oldest->entered)
       second = std::exchange(oldest, &here);
@@ -65,6 +87,10 @@ void SlotRing::get_off(std::uint32_t stop, Cycle now) {
   use_.longest_ride = std::max(use_.longest_ride, now - oldest->entered);
   moved_ = now;
   const std::uint32_t id = std::exchange(oldest->packet, kNone);
+  if (!std::exchange(flying_[id].has_place, true)) {
+    ends_[stop]->keep_place();
+    if (stops_[stop].first_in_line == id) stops_[stop].first_in_line = kNone;
+  }
   if (--flying_[id].left > 0) return;
   ends_[stop]->arrive(flying_[id].packet, now + port_cycles_ - 1);
   unused_.push_back(id);
@@ -102,7 +128,7 @@ void SlotRing::begin_packet(std::uint32_t stop, Cycle now) {
   here.left = static_cast<std::uint32_t>(shape_.flits(packet.bytes));
   here.first = true;
   here.ready = now + port_cycles_ - 1;
-  flying_[here.packet] = {packet, here.left};
+  flying_[here.packet] = {packet, here.left, now};
   moved_ = now;
   ++use_.starts;
 }

@@ -31,7 +31,7 @@ class RingRun {
         seed_(seed),
         options_(options),
         graph_(draw_checked(topology)),
-        shape_(config::stop_ring(topology, graph_)),
+        shape_(config::stop_rings(topology, graph_).front()),
         ends_(traffic_ends(topology, traffic)),
         plan_(traffic, seed, graph_.resources, ends_),
         places_(graph_.resources) {
@@ -114,6 +114,7 @@ class RingRun {
       out.link_cycles.push_back(cycles);
       out.link_windows.push_back(window);
       out.link_packets.push_back(use.packets);
+      out.link_depths.push_back(shape_.hop);
       out.busy_in_window.push_back(use.in_window);
       out.flit_hops += use.busy;
     }

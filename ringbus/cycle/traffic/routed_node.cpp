@@ -21,12 +21,13 @@ std::uint16_t packet_cycles(const TrafficNodeSettings& settings, const Topology:
 
 }  // namespace
 
-RoutedNode::RoutedNode(ResourceId id, const Topology& topology, const TrafficNodeSettings& settings,
-                       const MachineClocks& clocks, std::optional<TrafficSource> source, std::uint64_t packets,
-                       TrafficWindow window, Ports ports)
+RoutedNode::RoutedNode(ResourceId id, const Topology& topology, const RingTimes& rings,
+                       const TrafficNodeSettings& settings, const MachineClocks& clocks,
+                       std::optional<TrafficSource> source, std::uint64_t packets, TrafficWindow window, Ports ports)
     : TrafficAgent(of_sink(settings), window),
       id_(id),
       topology_(topology),
+      rings_(rings),
       settings_(settings),
       clocks_(clocks),
       claim_cycles_(topology.claim_cycles(id)),
@@ -135,6 +136,11 @@ Cycle RoutedNode::alone(ResourceId to, Cycle there) const {
     const Topology::Wire& wire = topology_.wires()[topology_.ports(at).out[exit.port]];
     over_link(wire, exit.through, pieces);
     at = wire.to;
+    if (const TopologyPlan::StopRing* ring = topology_.ring(wire.to); ring != nullptr) {
+      at = topology_.leaves_at(*ring, wire.from, to);
+      const Cycle rides = rings_.alone(topology_.ring_number(wire.to), *ring, wire.from, at, settings_.packet_bytes);
+      pieces.front() = clocks_.between(wire.mhz, topology_.mhz(at)).enter(pieces.front() + rides + 1);
+    }
   }
   Cycle tail = 0;  // the sink takes a piece in each cycle
   for (const Cycle piece : pieces) tail = std::max(tail + 1, piece);
@@ -387,9 +393,8 @@ std::string RoutedNode::describe() const {
   if (own > 0) text += fmt::format("; {} packets wait to get in", own);
   if (text.empty()) return text;
   const bool resource = id_.value < topology_.resources();
-  return fmt::format("{} {}", resource ? "resource" : "router",
-                     resource ? id_.value : id_.value - topology_.resources()) +
-         text;
+  return fmt::format("{} {}{}", resource ? "resource" : "router",
+                     resource ? id_.value : id_.value - topology_.resources(), text);
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "ringbus/cycle/rings/ring_times.h"
 #include "ringbus/cycle/traffic/channel_claims.h"
 #include "ringbus/cycle/traffic/traffic_agent.h"
 #include "ringbus/cycle/traffic/traffic_source.h"
@@ -42,7 +43,8 @@ namespace carousel::ringbus::cycle {
 ///     inject_cycles + sum over its links of (node_cycles + latency_cycles) + L - 1 + eject_cycles
 /// where node_cycles are those of the node before the link. Where nodes and links go by several clocks, each flit
 /// passes from one to the next as ClockRatio says, and alone() follows it. A packet that changes to a link of another
-/// width, or at a router with `forward: whole`, is stored whole and takes its length once more.
+/// width, or at a router with `forward: whole`, is stored whole and takes its length once more. A ring whose stops have
+/// no queues is a node of its own between two wires of a cycle (TrafficRing), and takes RingTimes::alone().
 class RoutedNode final : public TrafficAgent {
  public:
   /// By link, and within a link by channel.
@@ -52,9 +54,11 @@ class RoutedNode final : public TrafficAgent {
     std::vector<Cycle> claims = {};  ///< by link that leads here: claim_cycles that its cycles have counted already
   };
 
-  /// Keeps references to the topology and the clocks. `source`: of a resource, from which `packets` are taken.
-  RoutedNode(ResourceId id, const Topology& topology, const TrafficNodeSettings& settings, const MachineClocks& clocks,
-             std::optional<TrafficSource> source, std::uint64_t packets, TrafficWindow window, Ports ports);
+  /// Keeps references to the topology, the rings and the clocks. `source`: of a resource, from which `packets` are
+  /// taken.
+  RoutedNode(ResourceId id, const Topology& topology, const RingTimes& rings, const TrafficNodeSettings& settings,
+             const MachineClocks& clocks, std::optional<TrafficSource> source, std::uint64_t packets,
+             TrafficWindow window, Ports ports);
 
   Cycle next() const override;
   void run(Cycle end) override;
@@ -142,6 +146,7 @@ class RoutedNode final : public TrafficAgent {
 
   ResourceId id_;
   const Topology& topology_;
+  const RingTimes& rings_;
   TrafficNodeSettings settings_;
   const MachineClocks& clocks_;
   Cycle claim_cycles_;

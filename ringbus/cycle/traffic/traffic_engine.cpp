@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -9,6 +10,7 @@
 #include "ringbus/cycle/traffic/routed_node.h"
 #include "ringbus/cycle/traffic/traffic_node.h"
 #include "ringbus/cycle/traffic/traffic_plan.h"
+#include "ringbus/cycle/traffic/traffic_ring.h"
 #include "ringbus/protocol/flow_rules.h"
 #include "ringbus/time/machine_clocks.h"
 #include "ringbus/time/windows.h"
@@ -28,6 +30,7 @@ class TrafficRun {
       : config_(config),
         options_(options),
         topology_(config.topology),
+        rings_(config.topology),
         flow_(config.topology.flow, topology_.direct() || topology_.routed()),
         ends_(traffic_ends(config.topology, config.workload.traffic)),
         plan_(config.workload.traffic, static_cast<std::uint64_t>(config.image.seed), topology_.resources(), ends_),
@@ -112,44 +115,59 @@ class TrafficRun {
     return std::min<Cycle>(topology_.claim_cycles(wire.to), static_cast<Cycle>(wire.node_cycles));
   }
 
-  /// The nodes of a graph: resources, which have sources, and routers.
+  /// The nodes of a graph: resources, which have sources, routers, and rings whose stops have no queues.
   void add_routed(const TrafficNodeSettings& settings) {
     const auto resources = static_cast<std::uint32_t>(topology_.resources());
     for (std::uint32_t n = 0; n < resources + topology_.hubs().size(); ++n) {
-      const std::int64_t own = topology_.mhz(ResourceId(n));
       TrafficNodeSettings node = settings;
-      node.clock = clocks_.from_core(own);
+      node.clock = clocks_.from_core(topology_.mhz(ResourceId(n)));
       std::optional<TrafficSource> source;
       if (n < resources)
         source.emplace(config_.workload.traffic, static_cast<std::uint64_t>(config_.image.seed), resources, ends_,
                        ResourceId(n), plan_.gap);
-      RoutedNode::Ports ports;
-      for (const std::uint32_t i : topology_.ports(ResourceId(n)).in) {
-        const Topology::Wire& wire = topology_.wires()[i];
-        const bool crosses = wire.mhz != own;
-        std::shared_ptr<const FarClock> far;
-        if (crosses)
-          far = std::make_shared<const FarClock>(
-              FarClock{clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.credit_cycles)});
-        ports.claims.push_back(claims_on(wire));
-        for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
-          ports.in.push_back(
-              {wires_[w].get(), static_cast<Cycle>(wire.latency_cycles + (crosses ? 0 : wire.credit_cycles)), far});
+      RoutedNode::Ports ports = routed_ports(ResourceId(n), settings.pieces);
+      if (topology_.ring(ResourceId(n)) != nullptr) {
+        auto ring = std::make_unique<TrafficRing>(ResourceId(n), config_.topology, topology_, node, plan_.window,
+                                                  std::move(ports.in), std::move(ports.out));
+        stop_rings_.push_back(ring.get());
+        nodes_.push_back(std::move(ring));
+        continue;
       }
-      for (const std::uint32_t i : topology_.ports(ResourceId(n)).out) {
-        const Topology::Wire& wire = topology_.wires()[i];
-        const bool crosses = wire.mhz != own;
-        const Cycle node_cycles = crosses ? 0 : static_cast<Cycle>(wire.node_cycles) - claims_on(wire);
-        for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w) {
-          ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles) + node_cycles,
-                                 static_cast<std::uint32_t>(wire.depth) * settings.pieces, 1);
-          if (crosses) ports.out.back().cross(clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.node_cycles));
-        }
-      }
-      nodes_.push_back(std::make_unique<RoutedNode>(ResourceId(n), topology_, node, clocks_, std::move(source),
+      nodes_.push_back(std::make_unique<RoutedNode>(ResourceId(n), topology_, rings_, node, clocks_, std::move(source),
                                                     n < resources ? plan_.packets[n] : 0, plan_.window,
                                                     std::move(ports)));
     }
+  }
+
+  RoutedNode::Ports routed_ports(ResourceId id, std::uint16_t pieces) const {
+    const std::int64_t own = topology_.mhz(id);
+    const bool ring = topology_.ring(id) != nullptr;
+    RoutedNode::Ports ports;
+    for (const std::uint32_t i : topology_.ports(id).in) {
+      const Topology::Wire& wire = topology_.wires()[i];
+      const bool crosses = wire.mhz != own;
+      std::shared_ptr<const FarClock> far;
+      if (crosses)
+        far = std::make_shared<const FarClock>(
+            FarClock{clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.credit_cycles)});
+      ports.claims.push_back(claims_on(wire));
+      for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w)
+        ports.in.push_back(
+            {wires_[w].get(), static_cast<Cycle>(wire.latency_cycles + (crosses ? 0 : wire.credit_cycles)), far});
+    }
+    for (const std::uint32_t i : topology_.ports(id).out) {
+      const Topology::Wire& wire = topology_.wires()[i];
+      const bool crosses = wire.mhz != own;
+      const Cycle node_cycles = crosses ? 0 : static_cast<Cycle>(wire.node_cycles) - claims_on(wire);
+      // Where packets get off a ring there is room for all, unless the node has few places.
+      const std::size_t places = !ring ? 1 : wire.places > 0 ? wire.places : std::numeric_limits<std::size_t>::max();
+      for (std::size_t w = first_wire_[i]; w < first_wire_[i + 1]; ++w) {
+        ports.out.emplace_back(*wires_[w], static_cast<Cycle>(wire.latency_cycles) + node_cycles,
+                               static_cast<std::uint32_t>(wire.depth) * pieces, places);
+        if (crosses) ports.out.back().cross(clocks_.between(own, wire.mhz), static_cast<Cycle>(wire.node_cycles));
+      }
+    }
+    return ports;
   }
 
   TrafficNode::Ports ports_of(ResourceId id) const {
@@ -220,14 +238,35 @@ class TrafficRun {
                            0,
                            wire.mhz});
       out.link_packets.push_back(moved.packets);
+      out.link_depths.push_back(static_cast<std::uint64_t>(wire.depth));
       out.flit_hops += moved.packets * out.flits;
     }
+    for (const TrafficRing* ring : stop_rings_) add_ring(ring->docks(), out);
     return out;
+  }
+
+  /// The links between the stops of a ring follow all others.
+  void add_ring(const RingDocks<TrafficToken>& docks, TrafficResult& out) const {
+    (out.stops ? *out.stops : out.stops.emplace()) += docks.fabric().use();
+    const config::StopRing& ring = docks.shape().drawn;
+    const ClockRatio clock = clocks_.from_core(ring.drawn->mhz);
+    for (std::size_t i = ring.first; i < ring.first + ring.links(); ++i) {
+      const config::Graph::Link& link = docks.graph().links[i];
+      const RingLinks::Use& use = docks.fabric().links().all()[i];
+      out.links.push_back({link.from, link.to, {use.busy, 0}, {}, 0, link.mhz});
+      out.link_cycles.push_back(clock.to_network(out.cycles));
+      out.link_windows.push_back(clock.to_network(out.window_end) - clock.to_network(out.window_begin));
+      out.link_packets.push_back(use.packets);
+      out.link_depths.push_back(docks.shape().hop);
+      out.busy_in_window.push_back(use.in_window);
+      out.flit_hops += use.busy;
+    }
   }
 
   const Config& config_;
   const RunOptions& options_;
   Topology topology_;
+  RingTimes rings_;
   FlowRules flow_;
   TrafficEnds ends_;
   TrafficPlan plan_;
@@ -236,7 +275,8 @@ class TrafficRun {
   std::vector<std::unique_ptr<WireOf<TrafficToken>>> wires_;  // as topology_.wires(), each with its virtual channels
   std::vector<std::size_t> first_wire_;                       // by link, and behind the last
   std::vector<std::unique_ptr<Channel<TrafficAck>>> acks_;    // beside them
-  std::vector<std::unique_ptr<TrafficAgent>> nodes_;          // resources, then routers
+  std::vector<std::unique_ptr<TrafficAgent>> nodes_;          // resources, then routers, then rings
+  std::vector<const TrafficRing*> stop_rings_;                // of these
 };
 
 }  // namespace

@@ -29,9 +29,10 @@ struct TrafficResult {
   LatencyHistogram latency;                  ///< latency of the packets offered
   std::vector<cycle::LinkUse> links;
   std::vector<std::uint64_t> link_packets;  ///< by link
+  std::vector<std::uint64_t> link_depths;   ///< by link: packets; between stops, flits for the cycles of its latency
   std::vector<Cycle> busy_in_window;        ///< by link: cycles of the window in which it moved a flit, by its clock
   std::vector<Cycle> link_cycles, link_windows;  ///< by link: the run and the window by its clock
-  std::optional<StopRingUse> stops;              ///< of a ring with stops
+  std::optional<StopRingUse> stops;              ///< of all rings with stops
   double wall_seconds = 0;
   std::size_t threads = 1;
 

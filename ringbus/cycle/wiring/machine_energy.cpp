@@ -4,24 +4,26 @@ namespace carousel::ringbus::cycle {
 
 namespace {
 
-/// In the order of CycleResult::links: those of packets, which may carry parcels as well, then those of a ring with
-/// stops, then those of parcels alone.
+/// In the order of CycleResult::links: those of packets, which may carry parcels as well, then those of parcels alone,
+/// then those of rings with stops.
 void read_links(const SimulatedMachine& machine, std::vector<std::uint64_t>& bytes) {
   bytes.clear();
   const std::size_t wires = machine.shared().topology.wires().size();
   for (std::size_t i = 0; i < wires; ++i) bytes.push_back(machine.network().near(i).packets.bytes_sent());
-  if (const RingHub* const ring = machine.network().ring(); ring != nullptr)
-    for (std::size_t i = 0; i < ring->graph().links.size(); ++i)
-      bytes.push_back(ring->links().all()[i].busy * static_cast<std::uint64_t>(ring->graph().links[i].bytes_per_cycle));
-  if (machine.parcels() == nullptr) return;
-  const ParcelPlan& plan = machine.parcels()->plan();
-  for (std::size_t i = 0; i < plan.links.size(); ++i) {
-    const std::uint64_t own = machine.parcels()->time_of(i).bytes();
-    if (plan.links[i].wire == ParcelPlan::kNone)
-      bytes.push_back(own);
-    else
-      bytes[plan.links[i].wire] += own;
+  if (machine.parcels() != nullptr) {
+    const ParcelPlan& plan = machine.parcels()->plan();
+    for (std::size_t i = 0; i < plan.links.size(); ++i) {
+      const std::uint64_t own = machine.parcels()->time_of(i).bytes();
+      if (plan.links[i].wire == ParcelPlan::kNone)
+        bytes.push_back(own);
+      else
+        bytes[plan.links[i].wire] += own;
+    }
   }
+  for (const RingHub* ring : machine.network().rings())
+    ring->for_each_link([&](const config::Graph::Link& drawn, const RingLinks::Use& use) {
+      bytes.push_back(use.busy * static_cast<std::uint64_t>(drawn.bytes_per_cycle));
+    });
 }
 
 void read_messages(const SimulatedMachine& machine, const std::optional<DistributorCounts>& distributor,

@@ -38,7 +38,7 @@ Network::Network(ChannelList& list, const Machine& machine, const TopologyConfig
     NodePorts ports = ports_at(node);
     if (topology.hubs()[hub] == Topology::Hub::kRing) {
       auto ring = std::make_unique<RingHub>(node, config, topology, std::move(ports.in), std::move(ports.out));
-      ring_ = ring.get();
+      rings_.push_back(ring.get());
       hubs_.push_back(std::move(ring));
     } else {
       hubs_.push_back(make_hub(hub, topology, machine.packets, std::move(ports.in), std::move(ports.out)));
@@ -77,7 +77,8 @@ Network::NodePorts Network::ports_at(ResourceId node) const {
     const bool crosses = wire.mhz != topology.mhz(node);
     const auto node_cycles = static_cast<Cycle>(wire.node_cycles);
     const Cycle away = (far_[i] ? Cycle{1} : latency(i)) + (crosses ? 0 : node_cycles);
-    OutPort& out = ports.out.emplace_back(*wires_[i], away, static_cast<std::uint32_t>(wire.depth), places);
+    OutPort& out = ports.out.emplace_back(*wires_[i], away, static_cast<std::uint32_t>(wire.depth),
+                                          wire.places > 0 ? wire.places : places);
     if (crosses) out.cross(clocks_.between(topology.mhz(node), wire.mhz), node_cycles);
     if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, away));
   }

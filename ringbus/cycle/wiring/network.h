@@ -35,8 +35,8 @@ class Network {
 
   const std::vector<std::unique_ptr<Hub>>& hubs() const { return hubs_; }
   const MachineClocks& clocks() const { return clocks_; }
-  /// Null unless the network is a ring whose stops have no queues.
-  const RingHub* ring() const { return ring_; }
+  /// The rings whose stops have no queues, in order.
+  const std::vector<const RingHub*>& rings() const { return rings_; }
   /// The far end of a wire, and its near end, which is the same but where others share it.
   Wire& far(std::size_t number) const { return far_[number] ? *far_[number] : *wires_[number]; }
   Wire& near(std::size_t number) const { return *wires_[number]; }
@@ -49,7 +49,7 @@ class Network {
   std::vector<std::unique_ptr<Wire>> wires_;  // as the topology's
   std::vector<std::unique_ptr<Wire>> far_;    // likewise; null unless others share it
   std::vector<std::unique_ptr<Hub>> hubs_;
-  const RingHub* ring_ = nullptr;
+  std::vector<const RingHub*> rings_;
 };
 
 }  // namespace carousel::ringbus::cycle

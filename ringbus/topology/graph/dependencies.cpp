@@ -131,4 +131,19 @@ Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes
   return out;
 }
 
+void join_stop_rings(Dependencies& waits, const config::Graph& graph, const std::vector<config::StopRing>& rings,
+                     const std::vector<bool>& bounded) {
+  for (const config::StopRing& ring : rings) {
+    std::vector<std::uint32_t> next;
+    for (std::size_t i = ring.first; i < ring.first + ring.links(); ++i) {
+      if (!bounded[graph.links[i].to]) continue;
+      for (const std::uint32_t link : waits.after(static_cast<std::uint32_t>(i)))
+        if (!ring.owns(link)) next.push_back(link);
+    }
+    std::sort(next.begin(), next.end());
+    next.erase(std::unique(next.begin(), next.end()), next.end());
+    for (std::size_t i = ring.first; i < ring.first + ring.links(); ++i) waits.set(static_cast<std::uint32_t>(i), next);
+  }
+}
+
 }  // namespace carousel::ringbus

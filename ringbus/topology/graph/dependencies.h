@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config/graph/graph.h"
+#include "core/config/graph/ring.h"
 #include "core/types/ids.h"
 #include "ringbus/topology/graph/routes.h"
 
@@ -48,5 +49,11 @@ Dependencies traffic_dependencies(const config::Graph& graph, const Routes& rout
 /// for all packets makes none wait.
 Dependencies visit_dependencies(const config::Graph& graph, const Routes& routes, std::span<const ResourceId> round,
                                 const std::vector<bool>& bounded);
+
+/// Puts rings whose stops have no queues in the place of their links. Nothing waits on such a ring but for a place at a
+/// stop that has few (`bounded`, by node): that keeps the slots full which all others wait for. So each link of the
+/// ring waits for all to which packets go on from such stops.
+void join_stop_rings(Dependencies& waits, const config::Graph& graph, const std::vector<config::StopRing>& rings,
+                     const std::vector<bool>& bounded);
 
 }  // namespace carousel::ringbus

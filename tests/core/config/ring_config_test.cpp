@@ -31,7 +31,7 @@ TEST(RingConfig, RingsSideBySideAreLinksSideBySide) {
   EXPECT_THAT(names,
               ElementsAre("r[0] > r[1]", "r[0] > r[1]", "r[1] > r[0]", "r[1] > r[0]", "r[1] > r[2]", "r[1] > r[2]",
                           "r[2] > r[1]", "r[2] > r[1]", "r[2] > r[0]", "r[2] > r[0]", "r[0] > r[2]", "r[0] > r[2]"));
-  const config::StopRing ring = config::stop_ring(config.topology, graph);
+  const config::StopRing ring = config::stop_rings(config.topology, graph).front();
   EXPECT_THAT(ring.nodes, ElementsAre(0, 1, 2));
   EXPECT_EQ(graph.name_of(graph.links[ring.link(2, 1, 1)]), "r[0] > r[2]");
   EXPECT_EQ(parse_config(resolved_yaml(config), "again.yaml").topology.links, config.topology.links);
@@ -66,7 +66,22 @@ const std::string kCarriedClock =
 const std::string kNoRing = kTraffic + three("{line: 'r[*]', both: true, stops: {rule: slots}}");
 const std::string kDeep = kTraffic + three(kSlots + ", depth: 4}");
 const std::string kChannels = kTraffic + three(kSlots + ", virtual_channels: 2}");
-const std::string kTwo = kTraffic + three(kSlots + "}\n    - {from: 'r[0]', to: 'r[2]'}");
+/// Two rings of three that meet at a router with these keys.
+std::string meeting(const std::string& router, const std::string& rings, const std::string& more = "") {
+  return kTraffic +
+         "topology:\n  shape: graph\n  nodes: [{name: a, count: 2}, {name: b, count: 2}, {name: x, kind: " + "router" +
+         router + "}]\n" + more + "  links:\n    - {ring: 'a[*], x', " + rings + "}\n    - {ring: 'b[*], x', " + rings +
+         "}\n";
+}
+const std::string kFewPlaces = meeting(", buffers: 2", "stops: {rule: slots}");
+const std::string kGrantedPlaces = meeting(", buffers: 8", "stops: {rule: grants}");
+const std::string kLanes =
+    "scene: {builtin: cornell}\n" + three("{ring: 'r[*]', lanes: 1, lane: 0, stops: {rule: slots}}");
+const std::string kClasses = meeting("", "stops: {rule: slots}", "  channels: hops\n");
+const std::string kManyChannels =
+    meeting("", "stops: {rule: slots}", "  link: {virtual_channels: 2}\n") + "    - {from: 'a[0]', to: 'b[0]'}\n";
+const std::string kMetAnswers =
+    "workload: {traffic: {reply_bytes: 64}}\n" + meeting("", "stops: {rule: slots}").substr(kTraffic.size());
 const std::string kPart = kTraffic +
                           "topology: {shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[0..2]', stops: "
                           "{rule: slots}}]}\n";
@@ -93,7 +108,17 @@ INSTANTIATE_TEST_SUITE_P(
                   "topology.links.0.depth: a ring with rule: slots holds a flit for each cycle"},
         BadConfig{"Channels", kChannels.c_str(),
                   "topology.links.0.virtual_channels: a ring with rule: slots has no queues"},
-        BadConfig{"TwoLinks", kTwo.c_str(), "topology.links.1: a ring with rule: slots is the whole network"},
+        BadConfig{"FewPlaces", kFewPlaces.c_str(),
+                  "topology.nodes.2.buffers: packets of all stops may have come to x in part, each in a place of its "
+                  "own; expected 3 or more"},
+        BadConfig{"Lanes", kLanes.c_str(), "topology.links.0.lane: a drawing with a ring of stops has no lanes yet"},
+        BadConfig{"GrantedPlaces", kGrantedPlaces.c_str(), "topology.nodes.2.buffers: an arbiter knows no places of x"},
+        BadConfig{"ChannelsOfClasses", kClasses.c_str(),
+                  "topology.channels: a ring with stops has no virtual channels; expected any, found hops"},
+        BadConfig{"ManyChannels", kManyChannels.c_str(),
+                  "topology.link.virtual_channels: a drawing with a ring of stops has one channel a link yet"},
+        BadConfig{"AnswersBetweenRings", kMetAnswers.c_str(),
+                  "workload.traffic.reply_bytes: answers are modelled on a ring with stops that is alone"},
         BadConfig{"NotOnTheRing", kPart.c_str(), "topology.nodes.0: r[3] has no link"},
         BadConfig{"NodeLatency", kLate.c_str(), "topology.nodes.0.latency_cycles: nothing waits at a stop"},
         BadConfig{"TwoStops", kPair.c_str(), "expected three nodes at least, each of them once, found 2 nodes"},

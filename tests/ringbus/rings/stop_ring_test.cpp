@@ -4,10 +4,9 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "ringbus/cycle/traffic/traffic_plan.h"
-#include "ringbus/cycle/traffic/traffic_source.h"
 #include "ringbus/topology/graph_facts.h"
 #include "tests/ringbus/rings/ring_run.h"
+#include "tests/ringbus/traffic/created_packets.h"
 
 namespace carousel::ringbus::stop_ring_test {
 namespace {
@@ -33,26 +32,6 @@ std::uint64_t delivered(const Clocks& clocks, std::uint64_t created, std::uint64
   at += (cost + way) * noc_step;
   while (at % core_step != 0) ++at;
   return at / core_step + cost + eject;
-}
-
-/// The packets that one source creates.
-struct Created {
-  std::vector<std::uint64_t> times;
-  std::vector<std::uint32_t> to;
-};
-Created created_by(const Config& c, std::uint32_t resource) {
-  const auto seed = static_cast<std::uint64_t>(c.image.seed);
-  const auto resources = static_cast<std::size_t>(c.topology.resources);
-  const cycle::TrafficEnds ends = cycle::traffic_ends(c.topology, c.workload.traffic);
-  const cycle::TrafficPlan plan(c.workload.traffic, seed, resources, ends);
-  cycle::TrafficSource source(c.workload.traffic, seed, resources, ends, ResourceId(resource), plan.gap);
-  Created out;
-  for (std::uint64_t i = 0; i < plan.packets[resource]; ++i) {
-    source.advance();
-    out.times.push_back(source.created());
-    out.to.push_back(source.destination().value);
-  }
-  return out;
 }
 
 struct Form {
