@@ -12,8 +12,7 @@ That the comparison can fail is tried in every run: each of LIES gives the model
 engine's, and some machine must then disagree.
 
 Left out, as in the page: any-hit calls, cull planes, bundles, bounding spheres, leaves held in nodes, faults,
-idle_resources_shade, distribute: random, hierarchical, point_to_point, raster, traffic; of graphs, ways that are
-not the shortest.
+idle_resources_shade, distribute: random, point_to_point, raster, traffic; of graphs, ways that are not the shortest.
 """
 import argparse
 import copy
@@ -52,7 +51,7 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "memory.l2_latency_cycles": 2, "memory.dram_latency_cycles": 2, "memory.dram_bytes_per_cycle": 8,
         "memory.fetch_ahead": 1, "memory.strip_ahead": 1, "memory.shape_buffer_kib": 1, "memory.dram.queue": 1, "memory.dram.channels": 1,
         "memory.l2_banks": 1, "memory.l2_answer_bytes_per_cycle": 3, "memory.l1_latency_cycles": 2, "memory.l1_mshrs": 1, "memory.l2_mshrs": 1, "memory.l2_lines_per_cycle": 1, "collections.ready": 1, "collections.sort_ids_per_cycle": 1, "collections.order": {"stored": "nearest"}, "collections.key": {"block": "node"}, "collections.grouped": {True: False}, "rays.banks": 1,
-        "topology.shape": {"central": "ring"}, "topology.tour": {"nearest": "names"}, "topology.form": {"distributor": "cells"}, "testers.distributor.testers": 1,
+        "topology.shape": {"central": "ring"}, "topology.groups": 1, "topology.tour": {"nearest": "names"}, "topology.form": {"distributor": "cells"}, "testers.distributor.testers": 1,
         "testers.distributor.stragglers": {"forward": "wait", "wait": "forward"}, "shading.cycles_per_shade": 1,
         "shading.lanes": 1, "shading.sort": {"shader": "none"}, "shading.sort_rays_per_cycle": 1,
         "memory.fetch": {"multicast": "resource"}, "memory.ray_records": {"master": "resource"},

@@ -98,6 +98,20 @@ class Drawing:
         return [link for link in self.links if link[5] in (None, lane)]
 
 
+def rings_of_rings(topology):
+    """The shape hierarchical as a drawing ("Rings of rings")."""
+    resources, groups = topology["resources"], min(topology["groups"], topology["resources"])
+    links = []
+    for group in range(groups):
+        members = [f"r[{r}]" for r in range(resources) if r * groups // resources == group]
+        links.append({"ring": ", ".join([f"bridge[{group}]", *members])})
+        if groups > 1:
+            links.append({"from": f"bridge[{group}]", "to": f"bridge[{(group + 1) % groups}]"})
+    return {**topology, "shape": "graph", "tour": "names", "links": links,
+            "nodes": [{"name": "r", "count": resources},
+                      {"name": "bridge", "kind": "router", "count": groups, "forward": "whole"}]}
+
+
 class GraphTopology(Topology):
     def __init__(self, config):
         t = config["topology"]

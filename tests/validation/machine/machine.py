@@ -1,7 +1,7 @@
 """The whole machine."""
 from .clock import Clock, Trace
 from .dram import BankedMemory
-from .graph import GraphTopology, connect_graph
+from .graph import GraphTopology, connect_graph, rings_of_rings
 from .memory import Memory, ShapePort, caches_of
 from .network import Topology, connect
 from .prefetcher import prefetchers_of
@@ -19,7 +19,10 @@ def memory(config, caches):
 
 class Machine:
     def __init__(self, facts):
-        config = self.config = facts["config"]
+        config = facts["config"]
+        if config["topology"]["shape"] == "hierarchical":
+            config = {**config, "topology": rings_of_rings(config["topology"])}
+        self.config = config
         self.facts, self.clock, self.trace = facts, Clock(), Trace()
         self.nodes = [Node(i, fact) for i, fact in enumerate(facts["nodes"])]
         graph = config["topology"]["shape"] == "graph" and config["topology"]["resources"] > 1

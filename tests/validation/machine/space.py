@@ -142,8 +142,18 @@ def draw(seed, index):
             memory["fetch"] != "multicast" and r.random() < 0.4):
         topology["resources"] = pick([resources, 4, 5])
         topology.update(draw_graph(r, topology["resources"], config["packets"]["results"] in ("mask", "implied_order")))
-    draw_levels(random.Random(seed * 1000003 + index + 2), config)
+    draw_rings_of_rings(random.Random(seed * 1000003 + index + 2), config)
+    draw_levels(random.Random(seed * 1000003 + index + 3), config)
     return config
+
+
+def draw_rings_of_rings(r, config):
+    """Makes some of the rings that are left rings of rings."""
+    topology = config["topology"]
+    if (topology["shape"] in ("ring", "bidirectional", "multi_ring") and topology["resources"] > 1 and
+            config["memory"]["fetch"] != "multicast" and r.random() < 0.4):
+        resources = r.choice([topology["resources"], 4, 5, 7])
+        topology.update(shape="hierarchical", resources=resources, groups=r.randint(1, min(4, resources)))
 
 
 def draw_levels(r, config):
