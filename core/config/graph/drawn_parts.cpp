@@ -57,6 +57,8 @@ class PartFinder {
   bool asks(std::uint32_t resource) const {
     return graph_.manager_of.empty() || graph_.manager_of[resource] != resource;
   }
+  /// It asks for spilled collections alone.
+  bool spills(std::uint32_t process) const { return std::ranges::count(parts_.spilling, process) > 0; }
   Nodes asking() const {
     Nodes out;
     for (std::uint32_t r = 0; r < graph_.resources; ++r)
@@ -95,14 +97,15 @@ class PartFinder {
       all = false;
     }
     if (!all) return;
-    // Its port, which nothing uses, is at a cache of its resources.
+    // The port of a packet process that no cache serves, which nothing uses, is at one of its resources'.
     for (std::uint32_t r = graph_.resources; r-- > 0;)
-      if (asks(r) && !graph_.manager_of.empty()) parts_.caches_of[graph_.manager_of[r]] = parts_.caches_of[r];
+      if (asks(r) && !graph_.manager_of.empty() && !spills(graph_.manager_of[r]))
+        parts_.caches_of[graph_.manager_of[r]] = parts_.caches_of[r];
     const Graph shapes = graph_.only(Carried::kShapes);
     for (std::size_t group = 0; group < parts_.caches.size(); ++group) {
       Nodes clients;
-      for (const std::uint32_t r : asking())
-        if (parts_.caches_of[r] == group) clients.push_back(r);
+      for (std::uint32_t r = 0; r < graph_.resources; ++r)
+        if (parts_.caches_of[r] == group && (asks(r) || spills(r))) clients.push_back(r);
       if (!there_and_back(shapes, Carried::kShapes, clients, parts_.caches[group].nodes)) return;
     }
   }
@@ -120,15 +123,11 @@ class PartFinder {
     for (const std::uint32_t node : served) {
       if (node >= graph_.resources)
         return issue(node_key(entry, ".serves"), fmt::format("expected resources, found {}", name(node)));
-      if (!asks(node))
-        return issue(node_key(entry, ".serves"),
-                     fmt::format("the resources that a packet_process serves read their shapes themselves; expected "
-                                 "these, found {}",
-                                 name(node)));
       if (parts_.caches_of[node] != kNone && parts_.caches_of[node] != group)
         return issue(node_key(entry, pattern.empty() ? ".name" : ".serves"),
                      fmt::format("{} asks {} already; expected one group of caches for each resource", name(node),
                                  name(parts_.caches[parts_.caches_of[node]].nodes.front())));
+      if (!asks(node) && parts_.caches_of[node] == kNone) parts_.spilling.push_back(node);
       parts_.caches_of[node] = group;
     }
   }

@@ -18,9 +18,10 @@ struct Banks {
 /// The parts of a machine that are drawn beside resources and routers, and who reaches which of them over links. A part
 /// that is not drawn has its place and its wires beside the links.
 struct DrawnParts {
-  std::vector<Banks> caches;           ///< a group for each entry of topology.nodes
-  std::vector<std::size_t> caches_of;  ///< by resource: the group that it asks; empty without caches
-  Banks memories;                      ///< no nodes: one memory, beside the links
+  std::vector<Banks> caches;            ///< a group for each entry of topology.nodes
+  std::vector<std::size_t> caches_of;   ///< by resource: the group that it asks; empty without caches
+  std::vector<std::uint32_t> spilling;  ///< packet processes that a cache serves, to which their collections may spill
+  Banks memories;                       ///< no nodes: one memory, beside the links
   std::optional<std::uint32_t> shading;
   bool new_rays = false, completed_rays = false;  ///< they travel over links
 

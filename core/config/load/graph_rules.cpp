@@ -104,8 +104,6 @@ void check_managers(const Config& config, const RuleBreach& breach) {
         enum_name(c.visit));
   value(config.collections.home != Home::kIssuer, "collections.home",
         "the packet_process keeps the collections of its resources", "issuer", enum_name(config.collections.home));
-  value(config.collections.when_full == WhenFull::kSpill && cycle, "collections.when_full",
-        "a packet_process has no memory to spill to yet", "reserve", "spill");
   const Placement placement = config.rays.placement;
   value(placement != Placement::kBalanced && placement != Placement::kRoundRobin, "rays.placement",
         "new rays go to the resources of one packet_process", "balanced or round_robin", enum_name(placement));
@@ -118,6 +116,27 @@ void check_managers(const Config& config, const RuleBreach& breach) {
   refuse(config.faults.resource.kind != FaultsConfig::Resource::Kind::kNone, "faults.resource.kind",
          "resources that a packet_process serves have no faults yet; expected none");
   for_each_own(c, [&](const OwnOf& one) { check_own_of(config, one, breach); });
+}
+
+/// A packet process spills to the cache that serves it, and asks it for nothing else.
+void check_spilling(const Config& config, const Graph& graph, const DrawnParts& parts, const RuleBreach& breach) {
+  if (graph.manager_of.empty() || config.engine.kind != EngineKind::kCycle) return;
+  const bool spill = config.collections.when_full == WhenFull::kSpill;
+  for (const std::uint32_t process : graph.issuers()) {
+    const bool served = std::ranges::count(parts.spilling, process) > 0;
+    if (served == spill) continue;
+    return breach("collections.when_full",
+                  spill
+                      ? fmt::format("{0} has no memory to spill to; expected reserve, or a cache that serves {0}",
+                                    graph.nodes[process].name)
+                      : fmt::format("a cache serves {0}, which reads no shapes and spills nothing; expected spill, or "
+                                    "no {0} in serves of the cache",
+                                    graph.nodes[process].name));
+  }
+  if (spill && config.memory.l1_kib > 0)
+    breach("memory.l1_kib", fmt::format("a packet_process has no L1 through which collections could spill; expected 0, "
+                                        "or collections.when_full: reserve; found {}",
+                                        config.memory.l1_kib));
 }
 
 /// Units of a central machine are all alike, and a distributor knows one.
@@ -258,6 +277,7 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   if (issues.empty()) drawn = find_parts(c, graph, config.memory.line_bytes, issues);
   if (issues.empty()) {
     check_parts(config, graph, drawn, breach);
+    check_spilling(config, graph, drawn, breach);
     check_bus(config, graph, breach);
   }
   for (std::size_t i = 0; i < c.overrides.size(); ++i) {

@@ -72,6 +72,30 @@ TEST_F(PacketProcesses, KeepTheCollectionsAndNoRays) {
   }
 }
 
+// Where a cache serves them, their collections spill over its links, and come back.
+TEST_F(PacketProcesses, SpillToTheCacheThatServesThem) {
+  const std::string machine =
+      "rays: {slots_per_resource: 64}\npackets: {rays: 8}\n" + kNodes +
+      "    - {name: l2_a, kind: cache, serves: 'r[0..2]'}\n    - {name: l2_b, kind: cache, serves: 'r[3..5], p[*]'}\n" +
+      kLinks + "    - {from: 'p[0..1]', to: l2_b, both: true, latency_cycles: LATENCY, carries: [shapes]}\n" + kShapes;
+  const auto run = [&](const std::string& latency) {
+    std::string text = machine;
+    text.replace(text.find("LATENCY"), 7, latency);
+    return run_text(scene_, text + "collections: {when_full: spill}\n");
+  };
+  const Outcome few = run("10"), far = run("90");
+  std::uint64_t spilled = 0, over_links = 0;
+  for (std::size_t r = 0; r < 8; ++r) {
+    spilled += few.result.collections[r].spilled;
+    EXPECT_EQ(few.result.collections[r].spilled > 0, r >= 6) << r;
+  }
+  EXPECT_GT(spilled, 0u);
+  for (const cycle::LinkUse& link : few.result.cycle->links)
+    if (link.from == 6 || link.from == 7) over_links += link.to == 9 ? link.bytes : 0;
+  EXPECT_GT(over_links, 4 * spilled);  // an ID has 4 bytes, and a block a header
+  EXPECT_GT(far.result.cycle->cycles, few.result.cycle->cycles);
+}
+
 // Six resources have box units, and eight read packets: the bounds and shares of classes of parts are by these.
 TEST_F(PacketProcesses, CountNoUnits) {
   const Outcome out = run_text(scene_, kMachine);
