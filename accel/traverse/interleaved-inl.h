@@ -19,11 +19,15 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
+/// Rays under way at a time: two gain half as much, six nothing more.
+inline constexpr std::size_t kWalkersInTurn = 4;
+
 /// A ray on its way.
 template <class Slab>
 struct Walker {
   RayRecord* record;
-  FrameStorage<Slab> frame;
+  LocalRay<Slab>* frame;
+  std::uint32_t ray;  ///< its number, for who sent it out
   bool any_hit;
   NodeRef ref;         ///< the inner node to be visited next
   std::uint32_t mask;  ///< which of its children are hit
@@ -37,7 +41,7 @@ struct Walker {
 template <Nodes kNodes, class Slab>
 HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, NodeRef ref, TraceStacks& stacks,
                         TraversalCounts& counts) {
-  LocalRay<Slab>& frame = walker.frame.ray;
+  LocalRay<Slab>& frame = *walker.frame;
   Hit& hit = walker.record->hit;
   for (;; any = false) {
     if (!any) {
@@ -61,42 +65,37 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
   }
 }
 
-/// Traces the members, each through everything below `key`.
-template <Nodes kNodes, class Slab>
-void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
-  constexpr std::size_t kWalkers = 4;  // two gain half as much, six nothing more
+/// Takes rays through the tree in turn. `start(walker)` gives a walker its next ray, its frame and any_hit, and returns
+/// the node from which it goes, or nothing when no ray is left; `finish(walker)` is told of each that is done.
+template <Nodes kNodes, class Slab, class Start, class Finish>
+HWY_INLINE void take_turns(const Accel& accel, TraceStacks& stacks, TraversalCounts& counts, const Start& start,
+                           const Finish& finish) {
+  constexpr std::size_t kWalkers = kWalkersInTurn;
   const Node* const nodes = accel.nodes.data();
-  TraceStacks stacks;
-  TraversalCounts counts(members.culls);
-  std::size_t next = 0;
+  std::size_t count = 0;
   Walker<Slab> walkers[kWalkers];
   Walker<Slab>* active[kWalkers];
-  std::size_t count = 0;
   const bool quantised = kNodes == Nodes::kOther && !accel.full_nodes.empty();
-  const auto start = [&](Walker<Slab>& walker) HWY_ATTR {
-    while (next < members.count) {
-      RayRecord& record = member<8>(members, next++);
-      if (record.tag.flags & kRayDone) continue;
-      enter_frame(accel, key.instance, record, &walker.frame.ray, counts);
-      walker.record = &record;
-      walker.any_hit = takes_any_hit(record.tag);
+  const auto set_off = [&](Walker<Slab>& walker, std::size_t place) HWY_ATTR {
+    NodeRef from;
+    while (start(walker, place, from)) {
       walker.top = walker.stack.entries;
-      if (walk_on<kNodes>(accel, walker, true, key.ref, stacks, counts)) return true;
-      settle(record);
+      if (walk_on<kNodes>(accel, walker, true, from, stacks, counts)) return true;
+      finish(walker);
     }
     return false;
   };
-  for (Walker<Slab>& walker : walkers)
-    if (start(walker)) active[count++] = &walker;
+  for (std::size_t i = 0; i < kWalkers; ++i)
+    if (set_off(walkers[i], i)) active[count++] = &walkers[i];
   while (count > 0) {
     for (std::size_t k = 0; k < count; ++k) {
       Walker<Slab>& walker = *active[k];
       const Node& node = nodes[walker.ref.node()];
-      LocalRay<Slab>& frame = walker.frame.ray;
+      LocalRay<Slab>& frame = *walker.frame;
       walker.mask = met_children<kNodes>(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t,
                                          walker.entry, counts.box);
       if constexpr (kNodes == Nodes::kOther)
-        walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, members.culls);
+        walker.mask = cull(accel, node, frame.slab, frame.direction, ~0u, walker.mask, counts, counts.culls);
       if (HWY_UNLIKELY(quantised) && walker.mask != 0)
         count_extra_hits(accel, walker.ref, in_registers(frame.slab), walker.record->hit.t, walker.mask, counts);
       if (HWY_UNLIKELY(node.direct != 0) && test_direct(accel, node, ~0u, frame, walker.record->hit, counts) &&
@@ -111,8 +110,8 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
       NodeRef ref;
       if (any) ref = nearest_child(accel, nodes[walker.ref.node()], walker.mask, walker.entry, walker.top);
       if (!walk_on<kNodes>(accel, walker, any, ref, stacks, counts)) {
-        settle(*walker.record);
-        if (!start(walker)) {
+        finish(walker);
+        if (!set_off(walker, static_cast<std::size_t>(&walker - walkers))) {
           std::swap(active[k], active[--count]);
           continue;
         }
@@ -120,6 +119,31 @@ void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, I
       ++k;
     }
   }
+}
+
+/// Traces the members, each through everything below `key`.
+template <Nodes kNodes, class Slab>
+void trace_in_turn(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
+  TraceStacks stacks;
+  TraversalCounts counts(members.culls);
+  std::size_t next = 0;
+  FrameStorage<Slab> frames[kWalkersInTurn];
+  take_turns<kNodes, Slab>(
+      accel, stacks, counts,
+      [&](Walker<Slab>& walker, std::size_t place, NodeRef& from) HWY_ATTR {
+        while (next < members.count) {
+          RayRecord& record = member<8>(members, next++);
+          if (record.tag.flags & kRayDone) continue;
+          walker.frame = &frames[place].ray;
+          enter_frame(accel, key.instance, record, walker.frame, counts);
+          walker.record = &record;
+          walker.any_hit = takes_any_hit(record.tag);
+          from = key.ref;
+          return true;
+        }
+        return false;
+      },
+      [](Walker<Slab>& walker) HWY_ATTR { settle(*walker.record); });
   total += counts;
 }
 

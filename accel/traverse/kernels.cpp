@@ -10,6 +10,7 @@
 #include "accel/traverse/depth_first-inl.h"
 #include "accel/traverse/interleaved-inl.h"
 #include "accel/traverse/members-inl.h"
+#include "accel/traverse/stream-inl.h"
 #include "accel/traverse/strip-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -60,6 +61,12 @@ void TraceInterleaved(const Accel& accel, NodeKey key, const RayMembers& members
              : trace_in_turn<Nodes::kOther, SlabRay>)(accel, key, members, counts);
 }
 
+void TraceStream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  const bool lists = nodes_of(accel) == Nodes::kPlain && accel.accuracy.box != BoxLevel::kDouble &&
+                     !accel.is_group(key.instance) && !accel.enters_member(key);
+  lists ? trace_in_stream(accel, key, members, counts) : TraceInterleaved(accel, key, members, counts);
+}
+
 }  // namespace carousel::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -74,6 +81,7 @@ namespace carousel::accel {
 HWY_EXPORT(TestStrip);
 HWY_EXPORT(TraceSubtree);
 HWY_EXPORT(TraceInterleaved);
+HWY_EXPORT(TraceStream);
 
 namespace {
 
@@ -105,6 +113,11 @@ void trace_subtree(const Accel& accel, NodeKey key, const RayMembers& members, I
 void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
   const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TraceInterleaved)(accel, key, members, counts);
+}
+
+void trace_stream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
+  const ExactVolumeCount volumes(counts);
+  HWY_DYNAMIC_DISPATCH(TraceStream)(accel, key, members, counts);
 }
 
 std::vector<std::string> simd_targets() {

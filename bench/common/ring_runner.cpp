@@ -50,6 +50,8 @@ void change(RingSettings& s, std::string_view key, std::string_view value) {
     s.policy = choice<Policy>(key, value);
   else if (key == "select")
     s.select = choice<Select>(key, value);
+  else if (key == "lanes")
+    s.lanes = choice<Lanes>(key, value);
   else if (key == "queue")
     s.queue = choice<QueueKind>(key, value);
   else
@@ -72,6 +74,7 @@ RingSettings with_changes(RingSettings settings, const std::string& changes) {
 Config ring_config(const RingSettings& settings, const RingForm& form, int threads) {
   Config config;
   config.engine.threads = threads;
+  config.engine.lanes = settings.lanes;
   config.shading.workers = threads;
   config.topology.resources = form.resources;
   config.topology.link.depth = settings.link_depth;

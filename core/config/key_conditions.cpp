@@ -7,7 +7,6 @@
 #include "core/config/machine_conditions.h"
 
 namespace carousel {
-
 namespace {
 
 using namespace conditions;
@@ -50,6 +49,8 @@ constexpr Row kRows[] = {
     {"clocks.noc", kNetworkClock},
     {"clocks.synchroniser_cycles", kTwoClocks},
     {"engine.what_if", kCycle},
+    {"engine.lanes", kNative},
+    {"engine.lanes", kTreelets},
     {"topology.resources", kFreeSize},
     {"topology.rings", kMultiRing},
     {"topology.groups", kGroups},

@@ -36,7 +36,8 @@ TraversalSettings traversal_settings(const ResourceSettings& settings) {
           settings.bundles,
           settings.treelet_triangles,
           settings.scene_size,
-          settings.treelets};
+          settings.treelets,
+          settings.lanes};
 }
 
 }  // namespace

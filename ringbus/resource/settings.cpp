@@ -11,7 +11,8 @@ ResourceSettings resource_settings(const Config& config, float scene_size) {
           config.bvh.treelet_triangles,
           static_cast<std::uint32_t>(config.topology.resources),
           scene_size,
-          config.bvh.treelets.bytes > 0};
+          config.bvh.treelets.bytes > 0,
+          config.engine.lanes};
 }
 
 }  // namespace carousel::ringbus

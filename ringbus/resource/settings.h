@@ -4,6 +4,7 @@
 
 #include "core/config/fields/bundles.h"
 #include "core/config/fields/collections.h"
+#include "core/config/fields/engine.h"
 #include "core/config/fields/packets.h"
 
 namespace carousel {
@@ -21,6 +22,7 @@ struct ResourceSettings {
   std::uint32_t resources = 1;            ///< resources of the machine, for `home: hash`
   float scene_size = 1;                   ///< scale of entry distances and of boxes
   bool treelets = false;                  ///< rays gather at treelets of the whole tree
+  Lanes lanes = Lanes::kAuto;             ///< treelet traversal without a tracer of the engine's own
 };
 
 ResourceSettings resource_settings(const Config& config, float scene_size);

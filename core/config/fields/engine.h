@@ -26,11 +26,20 @@ inline constexpr auto kEnumNames<SimdTarget> = [] {
       {{kAuto, "auto"}, {kScalar, "scalar"}, {kSsse3, "ssse3"}, {kSse4, "sse4"}, {kAvx2, "avx2"}, {kAvx3, "avx3"}});
 }();
 
+/// The shapes or rays that the native engine's kernels test at once within treelets.
+enum class Lanes { kBoxes, kRays, kAuto };
+template <>
+inline constexpr auto kEnumNames<Lanes> = [] {
+  using enum Lanes;
+  return names<Lanes>({{kBoxes, "boxes"}, {kRays, "rays"}, {kAuto, "auto"}});
+}();
+
 struct EngineConfig {
   EngineKind kind = EngineKind::kNative;
   std::optional<std::int64_t> threads;  ///< absent: `auto`
   std::int64_t clock_mhz = 1000;
   SimdTarget simd = SimdTarget::kAuto;
+  Lanes lanes = Lanes::kAuto;
   EngineTransport transport = EngineTransport::kLocal;
   std::int64_t memory_limit_mib = 0;  ///< 0: none
   bool what_if = true;
@@ -57,6 +66,11 @@ void describe(V& v, EngineConfig& c) {
       "looks for the bottleneck.");
   v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "The clock of the simulated machine.");
   v.choice("simd", c.simd, "The instruction set of the test kernels. With auto it is the best that this machine has.");
+  v.choice(
+      "lanes", c.lanes,
+      "How a treelet's rays go through it. With boxes each goes by itself, four in turn. With rays they go together, "
+      "a list of rays at each node, which is split among its children. auto takes the lists where most of the "
+      "treelet's nodes may be met by several rays. Hits are the same.");
   v.choice(
       "transport", c.transport,
       "With mpi the processes that mpirun has started play the native engine's machine together, each an arc of its "

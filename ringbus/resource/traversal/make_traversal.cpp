@@ -40,7 +40,7 @@ Method make_ordered(const TraversalSettings& settings, const VisitContext& conte
 
 Method make_treelet(const TraversalSettings& settings, const VisitContext& context) {
   return std::make_unique<TreeletTraversal>(context, treelets_of(settings, context.accel),
-                                            make_spread(settings, context));
+                                            make_spread(settings, context), settings.lanes);
 }
 
 struct Row {

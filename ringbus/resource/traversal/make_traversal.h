@@ -6,6 +6,7 @@
 #include "accel/structure/accel.h"
 #include "core/config/fields/bundles.h"
 #include "core/config/fields/collections.h"
+#include "core/config/fields/engine.h"
 #include "core/config/fields/packets.h"
 
 namespace carousel::ringbus {
@@ -23,6 +24,7 @@ struct TraversalSettings {
   std::int64_t treelet_triangles = 2048;
   float scene_size = 1;
   bool treelets = false;
+  Lanes lanes = Lanes::kAuto;
 };
 
 std::unique_ptr<TraversalMethod> make_traversal(const TraversalSettings& settings, const VisitContext& context);

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/config/fields/engine.h"
 #include "ringbus/resource/traversal/traversal_method.h"
 #include "ringbus/resource/traversal/treelets.h"
 #include "ringbus/resource/visit/visit_context.h"
@@ -14,8 +15,9 @@ namespace carousel::ringbus {
 /// A treelet is one test, after which the ray has nothing to wait for there. Its retirement takes no block.
 class TreeletTraversal final : public TraversalMethod {
  public:
-  TreeletTraversal(const VisitContext& context, const Treelets& treelets, std::unique_ptr<TraversalMethod> above)
-      : context_(context), treelets_(treelets), above_(std::move(above)) {}
+  TreeletTraversal(const VisitContext& context, const Treelets& treelets, std::unique_ptr<TraversalMethod> above,
+                   Lanes lanes)
+      : context_(context), treelets_(treelets), above_(std::move(above)), lanes_(lanes) {}
 
   std::int32_t tests_at(accel::NodeKey key) const override {
     return treelets_.contains(key) ? 1 : above_->tests_at(key);
@@ -37,6 +39,7 @@ class TreeletTraversal final : public TraversalMethod {
   const VisitContext context_;
   Treelets treelets_;
   std::unique_ptr<TraversalMethod> above_;
+  Lanes lanes_;
 };
 
 }  // namespace carousel::ringbus

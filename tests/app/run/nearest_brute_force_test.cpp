@@ -34,6 +34,7 @@ const std::vector<Machine>& machines() {
       {"engine.kind=cycle topology.resources=3 bvh.treelets.bytes=1024", false},
       {"engine.kind=cycle topology.shape=independent testers.simt.warp=8 testers.simt.idle_lanes=help", false},
       {"engine.kind=native collections.traversal=treelet bvh.treelet_triangles=64 engine.simd=ssse3", false},
+      {"engine.kind=native collections.traversal=treelet engine.lanes=rays", false},
   };
   return all;
 }

@@ -41,6 +41,7 @@ std::vector<Factor> scene_and_engine() {
       {"engine.kind", all<EngineKind>()},
       {"engine.threads", {"1", "2"}, {"engine.kind=native"}},
       {"engine.simd", names(accel::usable_simd_targets())},
+      {"engine.lanes", all<Lanes>(), {"engine.kind=native"}},
       {"accuracy.triangle", all<TriangleLevel>()},
       {"accuracy.box", all<BoxLevel>()},
       {"accuracy.transform", all<TransformLevel>()},
