@@ -8,6 +8,7 @@
 #include "core/config/costs.h"
 #include "core/config/load/validate.h"
 #include "core/config/own_sections.h"
+#include "core/config/shader_programs.h"
 #include "core/program/program.h"
 #include "core/system/error.h"
 #include "core/types/nearest_counts.h"
@@ -52,6 +53,17 @@ double program_kib(const Config& c) {
   constexpr double kRegisterBytes = 4;
   const double unit = static_cast<double>(kInstructionBytes * instructions) + kRegisterBytes * kMostRegisters;
   return unit * static_cast<double>(ray_owners(c.topology) * own_testers(c)) / kKiB;
+}
+
+/// The registers and the instruction cache of all shader workers, and the store of their programs (KiB). Without a
+/// cache each worker has a store of its own.
+double shader_program_kib(const Config& c) {
+  constexpr double kRegisterBytes = 4;
+  const auto workers = static_cast<double>(shader_workers(c));
+  const auto store = static_cast<double>(shade_programs(c.shading, c.programs).store_bytes);
+  const auto cache = static_cast<double>(c.shading.instruction_cache.bytes);
+  const double each = kRegisterBytes * static_cast<double>(c.shading.registers) + (cache > 0 ? cache : store);
+  return (workers * each + (cache > 0 ? store : 0)) / kKiB;
 }
 
 /// A place of a link's queue: a packet, and what travels in its place.
@@ -179,10 +191,12 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
       (wire_lengths(topology, width, out.link_mm) + ring_mm + drawn.lengths_without_packets(width, out.link_mm) +
        (has_distributor(c) ? out.link_mm : 0));  // the bus to the testers
   wires.mm2 = wires.size * cost(c, Cost::kWirePitch) / 1000;
+  const bool programs = c.shading.program.any();
   report::AreaOf& shaders = parts[AreaPart::kShaders];
   shaders.size = static_cast<double>(shader_workers(c) * c.shading.lanes *
-                                     std::max<std::int64_t>(1, c.shading.products_per_cycle));
+                                     (programs ? 1 : std::max<std::int64_t>(1, c.shading.products_per_cycle)));
   shaders.mm2 = shaders.size * cost(c, Cost::kShaderArea);
+  if (programs) shaders.mm2 += shader_program_kib(c) * cost(c, Cost::kSramArea);
   if (c.frames && c.frames->count > 1 && c.frames->update != FrameUpdate::kNone) {
     store(AreaPart::kBuilder, builder_kib(c));
     parts[AreaPart::kBuilder].mm2 += static_cast<double>(c.frames->builder.boxes_per_cycle) * cost(c, Cost::kBoxUnit);

@@ -5,6 +5,7 @@
 #include "app/build_report/memory_report.h"
 #include "app/build_report/ring_sections.h"
 #include "core/config/own_sections.h"
+#include "core/config/shader_programs.h"
 #include "report/csv/ray_csv_columns.h"
 #include "report/text/ratio.h"
 #include "ringbus/results/run_features.h"
@@ -20,6 +21,19 @@ namespace {
 report::Rate rate(double rays, std::uint64_t cycles, std::int64_t clock_mhz) {
   const double per_cycle = ratio(rays, static_cast<double>(cycles));
   return {1000 * per_cycle, per_cycle * static_cast<double>(clock_mhz)};
+}
+
+report::ShaderPrograms shader_programs(const ShadingCounts& counts, const Config& config) {
+  const ShadePrograms programs = shade_programs(config.shading, config.programs);
+  const ShadeProgramCounts& of = counts.programs;
+  const std::uint64_t held = vectors_held(config.shading, programs);
+  return {of,
+          programs.registers,
+          held,
+          programs.store_bytes,
+          ratio(of.vector_cycles, counts.busy * held),
+          ratio(of.lane_instructions(), of.issued * static_cast<std::uint64_t>(config.shading.lanes)),
+          ratio(of.issued, counts.busy)};
 }
 
 report::UnitCycles unit_cycles(const ringbus::cycle::BankUse& use, const ringbus::cycle::TileResult& tile) {
@@ -168,6 +182,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   if (const ShadeVectorCounts& of = c.shading.vectors; config.shading.lanes > 1)
     r.shading.vectors = {of, ratio(of.rays, of.runs * static_cast<std::uint64_t>(config.shading.lanes)),
                          ratio(of.runs, of.vectors)};
+  if (config.shading.program.any()) r.shading.programs = shader_programs(c.shading, config);
   r.shading.utilisation = ratio(c.shading.busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
 }
 

@@ -72,7 +72,10 @@ class EnergyAccount::Sum {
       parts_[EnergyPart::kWires].add(bytes * a_.wire_mm_.at(i), pj(Cost::kWire));
     }
     for (std::size_t i = 0; i < e_.row_bytes.size(); ++i) message(a_.rows_[i], static_cast<double>(e_.row_bytes[i]));
-    parts_[EnergyPart::kShades].add(static_cast<double>(e_.shaded), pj(Cost::kShade));
+    if (a_.c_.shading.program.any())
+      shader_instructions(e_.programs);
+    else
+      parts_[EnergyPart::kShades].add(static_cast<double>(e_.shaded), pj(Cost::kShade));
     divisions(static_cast<double>(e_.shaded));  // each ray that is shaded has been made once
     parts_[EnergyPart::kProducts].add(static_cast<double>(e_.products), pj(Cost::kProduct));
     parts_[EnergyPart::kLookups].add(static_cast<double>(e_.lookups), pj(Cost::kLookup));
@@ -125,6 +128,18 @@ class EnergyAccount::Sum {
     add(counts.product_instructions, Cost::kProductInstruction);
     add(counts.divide_instructions, Cost::kDivideInstruction);
     add(counts.branch_instructions, Cost::kBranchInstruction);
+  }
+
+  /// In place of a constant for a ray that is shaded. To read is to issue: the caches are charged for the lines.
+  void shader_instructions(const ShadeProgramCounts& counts) {
+    const auto add = [&](EnergyPart part, std::uint64_t executed, Cost each) {
+      parts_[part].add(static_cast<double>(executed), pj(each));
+    };
+    add(EnergyPart::kShades, counts.simple + counts.read + counts.trace, Cost::kSimpleInstruction);
+    add(EnergyPart::kShades, counts.product, Cost::kProductInstruction);
+    add(EnergyPart::kShades, counts.divide, Cost::kDivideInstruction);
+    add(EnergyPart::kShades, counts.branch, Cost::kBranchInstruction);
+    add(EnergyPart::kLookups, counts.texture, Cost::kLookup);
   }
 
   void caches() {
@@ -212,6 +227,7 @@ ringbus::EnergyEvents energy_events(const report::Report& r) {
   out.shaded = r.shading.shaded;
   out.products = r.shading.products.value_or(0);
   out.lookups = r.shading.lookups.value_or(0);
+  if (r.shading.programs) out.programs = r.shading.programs->counts;
   if (r.memory->dram)
     for (const report::DramChannel& channel : r.memory->dram->channels)
       out.activations += channel.counts.row_misses + channel.counts.row_conflicts;

@@ -31,6 +31,7 @@ class PilotWorkload final : public Workload {
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   std::uint32_t shader(const RayResult& result) const override { return job_.workload().shader(result); }
+  ShadeFacts shade_facts(const RayResult& result) const override { return job_.workload().shade_facts(result); }
   void sky_reads(const RayResult& result, std::vector<SkyRead>& out) const override {
     job_.workload().sky_reads(result, out);
   }

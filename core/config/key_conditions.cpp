@@ -4,6 +4,7 @@
 #include <span>
 #include <string>
 
+#include "core/config/keys_without_rays.h"
 #include "core/config/machine_conditions.h"
 
 namespace carousel {
@@ -164,7 +165,10 @@ constexpr Row kRows[] = {
     {"testers.micromap_unit", kCycle},
     {"testers.hit_buffer", kCycle},
     {"primitives", kObjects},
-    {"programs", kObjects},
+    {"programs", kRunsPrograms},
+    {"programs.texture_cycles", kShaderPrograms},
+    {"programs.trace_cycles", kShaderPrograms},
+    {"programs.shaders", kShaderPrograms},
     {"testers.decoder", kCycle},
     {"testers.reciprocal", kCycle},
     {"energy.silhouette", kSilhouettes},
@@ -227,6 +231,14 @@ constexpr Row kRows[] = {
     {"shading.effects", kPicture},
     {"shading.idle_resources_shade", kCycle},
     {"shading.cycles_per_shade", kCycle},
+    {"shading.cycles_per_shade", kConstantShading},
+    {"shading.cycles_per_lookup", kConstantShading},
+    {"shading.products_per_cycle", kConstantShading},
+    {"shading.program", kCycle},
+    {"shading.registers", kShaderPrograms},
+    {"shading.instruction_cache", kShaderPrograms},
+    {"shading.instruction_cache.line_bytes", kInstructionCache},
+    {"shading.instruction_cache.miss_cycles", kInstructionCache},
     {"shading.cycles_per_lookup", kCycle},
     {"shading.cycles_per_any_hit", kCycle},
     {"shading.cycles_per_any_hit", kAnyHitShaders},
@@ -270,52 +282,6 @@ constexpr Row kRows[] = {
     {"workload.traffic.destinations", kTrafficAnywhere},
     {"workload.traffic.serve_cycles", kReplies},
 };
-
-/// The keys that a workload without rays feels; its machine has no other parts.
-struct Workloads {
-  WorkloadKind kind;
-  std::string_view otherwise;
-  std::span<const std::string_view> keys;
-};
-constexpr std::string_view kOfTraffic[] = {"schema_version",
-                                           "engine.kind",
-                                           "engine.threads",
-                                           "engine.memory_limit_mib",
-                                           "engine.clock_mhz",
-                                           "clocks",
-                                           "topology.resources",
-                                           "topology.shape",
-                                           "topology.rings",
-                                           "topology.flow",
-                                           "topology.nodes",
-                                           "topology.links",
-                                           "topology.groups",
-                                           "topology.routes",
-                                           "topology.root",
-                                           "topology.ways",
-                                           "topology.channels",
-                                           "topology.link.virtual_channels",
-                                           "topology.link.depth",
-                                           "topology.link.latency_cycles",
-                                           "image.seed",
-                                           "topology.link.bytes_per_cycle",
-                                           "workload",
-                                           "vary",
-                                           "verify"};
-constexpr std::string_view kOfMemoryTrace[] = {"schema_version",
-                                               "engine.kind",
-                                               "engine.memory_limit_mib",
-                                               "engine.clock_mhz",
-                                               "memory.dram",
-                                               "workload",
-                                               "memory.dram_latency_cycles",
-                                               "memory.dram_bytes_per_cycle",
-                                               "clocks.core",
-                                               "vary",
-                                               "verify"};
-constexpr Workloads kWithoutRays[] = {
-    {WorkloadKind::kTraffic, "synthetic traffic does not meet it", kOfTraffic},
-    {WorkloadKind::kMemoryTrace, "requests to memory do not meet it", kOfMemoryTrace}};
 
 /// True if `key` is `section` or lies below it.
 bool lies_in(std::string_view key, std::string_view section) {

@@ -254,6 +254,16 @@ inline constexpr Condition kTransforms{[](const C&, const S& s) { return s.trans
                                        "no instance has a transform"};
 inline constexpr Condition kObjects{[](const C& c, const S&) { return !c.scene.objects.empty(); },
                                     "scene.objects has none"};
+inline constexpr Condition kShaderPrograms{
+    [](const C& c, const S&) { return c.shading.program.any() && c.engine.kind == EngineKind::kCycle; },
+    "shader workers run no program"};
+inline constexpr Condition kConstantShading{[](const C& c, const S&) { return !c.shading.program.any(); },
+                                            "shading takes the time of its programs"};
+inline constexpr Condition kInstructionCache{[](const C& c, const S&) { return c.shading.instruction_cache.bytes > 0; },
+                                             "there is no instruction cache"};
+inline constexpr Condition kRunsPrograms{
+    [](const C& c, const S& s) { return !c.scene.objects.empty() || kShaderPrograms.holds(c, s); },
+    "scene.objects has none, and shader workers run no program"};
 inline constexpr Condition kProcedural{[](const C&, const S& s) { return s.procedural; },
                                        "the scene has no procedural primitives"};
 inline constexpr Condition kAnyHit{[](const C&, const S& s) { return s.any_hit; }, "every surface is opaque"};

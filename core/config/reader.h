@@ -94,6 +94,12 @@ class Reader : public RowVisitor<Reader> {
     if (const auto chosen = choose<decltype(value.hits)>(*visit.node)) value.hits = *chosen;
   }
   template <class T>
+  void section_or_text(std::string_view key, T& value, const char* meaning) {
+    const Node* const node = scopes_.back().node->find(key);
+    if (node != nullptr && node->kind == Node::Kind::kMap) return section(key, value, meaning);
+    on_field(key, value.standard, "", meaning);
+  }
+  template <class T>
   void list(std::string_view key, std::vector<T>& value, const char*) {
     const Visit visit(*this, key);
     if (!visit.node) return;

@@ -47,6 +47,10 @@ class RowWalk {
     section(key, value, meaning);
   }
   template <class T>
+  void section_or_text(std::string_view key, T& value, const char* meaning) {
+    section(key, value, meaning);
+  }
+  template <class T>
   void section(std::string_view key, T& value, const char*) {
     const std::size_t before = path_.size();
     path_ = path_of(key);

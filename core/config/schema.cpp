@@ -110,6 +110,11 @@ class SchemaWriter : public RowVisitor<SchemaWriter> {
     put(key, {{"anyOf", {section, std::move(word)}}}, "", meaning);
   }
   template <class T>
+  void section_or_text(std::string_view key, T& value, const char* meaning) {
+    const Json section = object(value, "");
+    put(key, {{"anyOf", {section, Json{{"type", "string"}, {"minLength", 1}}}}}, "", meaning);
+  }
+  template <class T>
   void list(std::string_view key, std::vector<T>&, const char* meaning) {
     Json item = object(T{}, "");
     if (!T::kRequired.empty()) item["required"] = Json::array({std::string(T::kRequired)});

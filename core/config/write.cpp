@@ -86,6 +86,10 @@ class JsonWriter : public RowVisitor<JsonWriter> {
     put(key, object(value));
   }
   template <class T>
+  void section_or_text(std::string_view key, T& value, const char*) {
+    put(key, object(value));
+  }
+  template <class T>
   void list(std::string_view key, std::vector<T>& value, const char*) {
     Json items = Json::array();
     for (const T& item : value) items.push_back(object(item));

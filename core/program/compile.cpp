@@ -14,7 +14,7 @@ namespace carousel {
 namespace {
 
 /// How an instruction is written: `kValue` writes its first register and reads the others.
-enum class Form : std::uint8_t { kValue, kLoad, kHit, kLoop, kIf, kElse, kEnd, kBreak, kStop };
+enum class Form : std::uint8_t { kValue, kLoad, kHit, kLoop, kIf, kElse, kEnd, kBreak, kStop, kRead, kTrace };
 
 struct OpRow {
   std::string_view name;
@@ -50,7 +50,19 @@ constexpr auto kOpRows = std::to_array<OpRow>({
     {"end", Form::kEnd, Op::kEnd, OpClass::kBranch, 0},
     {"break", Form::kBreak, Op::kIfNonzero, OpClass::kBranch, 0},
     {"stop", Form::kStop, Op::kIfNonzero, OpClass::kBranch, 0},
+    {"read", Form::kRead, Op::kRead, OpClass::kRead, 2},
+    {"texture", Form::kValue, Op::kTexture, OpClass::kTexture, 2},
+    {"trace", Form::kTrace, Op::kTrace, OpClass::kTrace, 1},
 });
+
+/// What `read` names, in the order of ShadeData; `texture` reads texels.
+constexpr auto kReadNames = std::to_array<std::string_view>({"material", "vertices"});
+
+/// True for what a program of this use may have. The rows of kOpRows that shaders alone have stand last.
+constexpr bool belongs(const OpRow& row, const ProgramUse& use) {
+  const bool of_shaders = row.op == Op::kRead || row.op == Op::kTexture || row.op == Op::kTrace;
+  return use.shades ? row.form != Form::kHit : !of_shaders;
+}
 
 /// True for break and stop, which may have a condition or none.
 constexpr bool may_have_one(Form form) {
@@ -81,11 +93,14 @@ struct Failed {};
 
 class Compiler {
  public:
-  Compiler(std::span<const std::string> texts, const std::map<std::string, double>& parameters, ProgramFault& fault)
-      : texts_(texts), parameters_(parameters), fault_(fault) {
-    for (const std::string_view input : kProgramInputs) names_.emplace_back(input);
-    set_ = (Registers{1} << kProgramInputs.size()) - 1;
+  Compiler(std::span<const std::string> texts, const std::map<std::string, double>& parameters, ProgramFault& fault,
+           const ProgramUse& use)
+      : texts_(texts), parameters_(parameters), fault_(fault), use_(use) {
+    for (const std::string_view input : use.inputs) names_.emplace_back(input);
+    set_ = (Registers{1} << use.inputs.size()) - 1;
   }
+
+  std::size_t registers() const { return names_.size(); }
 
   std::vector<Instruction> run() {
     if (texts_.empty()) fail(0, "expected instructions, found none");
@@ -99,7 +114,7 @@ class Compiler {
       line_ = blocks_.back().line;
       fail(0, fmt::format("expected an end of this {}, found the end of the program", blocks_.back().name()));
     }
-    if (!hits_) fail(0, "expected a hit somewhere in the program, found none");
+    if (!hits_ && !use_.shades) fail(0, "expected a hit somewhere in the program, found none");
     for (const std::size_t at : stops_) code_[at].target = here();
     return std::move(code_);
   }
@@ -126,7 +141,7 @@ class Compiler {
     const std::vector<Word> words = words_of(texts_[line_]);
     if (words.empty()) fail(0, "expected an instruction, found an empty text");
     const auto row = std::ranges::find(kOpRows, words[0].text, &OpRow::name);
-    if (row == kOpRows.end()) unknown(words[0]);
+    if (row == kOpRows.end() || !belongs(*row, use_)) unknown(words[0]);
     const std::size_t given = words.size() - 1;
     if (given != row->operands && !(may_have_one(row->form) && given == 1))
       fail(words[0].column, fmt::format("expected {} operands of {}{}, found {}", row->operands, row->name,
@@ -141,7 +156,8 @@ class Compiler {
 
   [[noreturn]] void unknown(const Word& word) {
     std::vector<std::string> names;
-    for (const OpRow& row : kOpRows) names.emplace_back(row.name);
+    for (const OpRow& row : kOpRows)
+      if (belongs(row, use_)) names.emplace_back(row.name);
     const auto near = nearest_name(word.text, names);
     fail(word.column, fmt::format("expected an instruction, found '{}'{}", word.text,
                                   near ? fmt::format("; did you mean '{}'?", *near)
@@ -182,6 +198,20 @@ class Compiler {
         return open_else(row);
       case Form::kEnd:
         return close(row);
+      case Form::kRead: {
+        const auto what = std::ranges::find(kReadNames, words[2].text);
+        if (what == kReadNames.end())
+          fail(words[2].column,
+               fmt::format("expected one of {}, found '{}'", fmt::join(kReadNames, ", "), words[2].text));
+        const std::uint8_t to = written(words[1]);
+        put(row, to, to, to, to).target = static_cast<std::uint16_t>(what - kReadNames.begin());
+        return;
+      }
+      case Form::kTrace: {
+        const std::uint8_t on = read(words[1]);
+        put(row, on, on, on, on);
+        return;
+      }
       case Form::kBreak:
       case Form::kStop:
         return leave(row, words);
@@ -220,7 +250,7 @@ class Compiler {
   std::uint8_t written(const Word& word) {
     require_name(word);
     const std::uint8_t at = find(word);
-    if (at < kProgramInputs.size())
+    if (at < use_.inputs.size())
       fail(word.column, fmt::format("{} belongs to the ray and is only read; expected another register", word.text));
     if (at == names_.size()) {
       if (names_.size() == kMostRegisters)
@@ -312,6 +342,7 @@ class Compiler {
   std::span<const std::string> texts_;
   const std::map<std::string, double>& parameters_;
   ProgramFault& fault_;
+  const ProgramUse& use_;
   std::size_t line_ = 0;
   std::vector<std::string> names_;  // of registers
   Registers set_;                   // on every way to here
@@ -326,9 +357,12 @@ class Compiler {
 
 std::optional<RayProgram> compile_program(std::span<const std::string> texts,
                                           const std::map<std::string, double>& parameters, const OpLatencies& latencies,
-                                          ProgramFault& fault) {
+                                          ProgramFault& fault, const ProgramUse& use) {
   try {
-    return RayProgram{Compiler(texts, parameters, fault).run(), latencies};
+    Compiler compiler(texts, parameters, fault, use);
+    RayProgram out{compiler.run(), latencies};
+    out.registers = compiler.registers();
+    return out;
   } catch (const Failed&) {
     return std::nullopt;
   }

@@ -21,6 +21,6 @@ struct ProgramFault {
 /// wrong: then `fault` says what.
 std::optional<RayProgram> compile_program(std::span<const std::string> texts,
                                           const std::map<std::string, double>& parameters, const OpLatencies& latencies,
-                                          ProgramFault& fault);
+                                          ProgramFault& fault, const ProgramUse& use = kPrimitiveUse);
 
 }  // namespace carousel

@@ -3,9 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "core/types/shade_facts.h"
 
 namespace carousel {
 
@@ -34,13 +37,17 @@ enum class Op : std::uint8_t {
   kIfZero,     ///< if a == 0, goes to target
   kIfNonzero,  ///< if a != 0, goes to target
   kJump,       ///< goes to target
+  kRead,       ///< d = 0 when the data `target` of ShadeData has come; shaders alone, as the next two
+  kTexture,    ///< d = 0 when the texels of the surface's next lookup, at a, have come and are filtered
+  kTrace,      ///< writes a new ray, in the direction a
 };
 
 /// Instructions of one class take the same time and energy.
-enum class OpClass : std::uint8_t { kSimple, kProduct, kDivide, kBranch };
-inline constexpr std::size_t kOpClasses = 4;
+enum class OpClass : std::uint8_t { kSimple, kProduct, kDivide, kBranch, kRead, kTexture, kTrace };
+inline constexpr std::size_t kOpClasses = 7;
 
-/// Cycles from the issue of an instruction of each class until its result may be read.
+/// Cycles from the issue of an instruction of each class until its result may be read: of a read or a texture from when
+/// its data has come. After a branch or a trace the next instruction waits for so long.
 using OpLatencies = std::array<std::uint8_t, kOpClasses>;
 
 struct Instruction {
@@ -53,7 +60,7 @@ struct Instruction {
 static_assert(sizeof(Instruction) == 12);
 
 inline constexpr std::size_t kMostRegisters = 64;
-inline constexpr std::size_t kMostInstructions = 1024;  ///< of a program
+inline constexpr std::size_t kMostInstructions = 4096;  ///< of a program
 inline constexpr std::uint64_t kMostSteps = 1 << 16;    ///< instructions of a test at most
 inline constexpr std::size_t kMostLoops = 4;            ///< within one another
 inline constexpr std::size_t kMostProgramHits = 8;      ///< of a test; those behind them are not taken
@@ -62,12 +69,20 @@ inline constexpr std::uint32_t kInstructionBytes = 8;   ///< of an instruction i
 /// The registers that hold the ray when a program begins. They are only read.
 inline constexpr std::array<std::string_view, 8> kProgramInputs{"ox", "oy", "oz", "dx", "dy", "dz", "tmin", "tmax"};
 
+/// What a program is for: the registers that it finds filled, and which instructions it may have.
+struct ProgramUse {
+  std::span<const std::string_view> inputs;
+  bool shades;  ///< of a shader worker; otherwise it finds the hits of a primitive
+};
+inline constexpr ProgramUse kPrimitiveUse{kProgramInputs, false}, kShaderUse{kShadeFactNames, true};
+
 /// A compiled program: a flat list of instructions, which ends behind its last one. Every loop has a bound, every
 /// register is set before it is read, and no test takes more than kMostSteps.
 struct RayProgram {
   std::vector<Instruction> code;
   OpLatencies latencies{4, 4, 16, 2};
-  float offset = 0;  ///< in model units: the error of a hit along its normal
+  std::size_t registers = kMostRegisters;  ///< those that it names, those that it finds filled included
+  float offset = 0;                        ///< in model units: the error of a hit along its normal
 };
 
 }  // namespace carousel

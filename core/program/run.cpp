@@ -1,7 +1,8 @@
 #include "core/program/run.h"
 
 #include <algorithm>
-#include <cmath>
+
+#include "core/program/arithmetic.h"
 
 namespace carousel {
 
@@ -21,59 +22,7 @@ ProgramRun run_program(const RayProgram& program, const Ray& ray) {
     ++out.instructions[static_cast<std::size_t>(i.of)];
     now = issued + (i.of == OpClass::kBranch ? latency : 1);
     const float a = r[i.a], b = r[i.b], c = r[i.c];
-    float d = 0;
     switch (i.op) {
-      case Op::kLoad:
-        d = i.value;
-        break;
-      case Op::kMove:
-        d = a;
-        break;
-      case Op::kAdd:
-        d = a + b;
-        break;
-      case Op::kSub:
-        d = a - b;
-        break;
-      case Op::kMul:
-        d = a * b;
-        break;
-      case Op::kFma:
-        d = std::fma(a, b, c);
-        break;
-      case Op::kDiv:
-        d = a / b;
-        break;
-      case Op::kSqrt:
-        d = std::sqrt(a);
-        break;
-      case Op::kMin:
-        d = a < b ? a : b;
-        break;
-      case Op::kMax:
-        d = a > b ? a : b;
-        break;
-      case Op::kAbs:
-        d = std::fabs(a);
-        break;
-      case Op::kNeg:
-        d = -a;
-        break;
-      case Op::kFloor:
-        d = std::floor(a);
-        break;
-      case Op::kLess:
-        d = a < b ? 1.0f : 0.0f;
-        break;
-      case Op::kLessEqual:
-        d = a <= b ? 1.0f : 0.0f;
-        break;
-      case Op::kEqual:
-        d = a == b ? 1.0f : 0.0f;
-        break;
-      case Op::kSelect:
-        d = a != 0 ? b : c;
-        break;
       case Op::kHit:
         if (out.hits < kMostProgramHits) out.hit[out.hits++] = {r[i.d], {a, b, c}};
         continue;
@@ -92,8 +41,10 @@ ProgramRun run_program(const RayProgram& program, const Ray& ray) {
       case Op::kJump:
         at = i.target;
         continue;
+      default:
+        break;
     }
-    r[i.d] = d;
+    r[i.d] = value_of(i, a, b, c);
     ready[i.d] = issued + latency;
   }
   out.cycles = now;

@@ -7,6 +7,7 @@
 
 #include "core/types/ids.h"
 #include "core/types/ray.h"
+#include "core/types/shade_facts.h"
 
 namespace carousel {
 
@@ -70,8 +71,17 @@ class Workload {
   virtual ShadeWork extra_work(const RayResult& /*result*/) const { return {}; }
 
   /// The code that shades a completed ray: rays with the same number can be shaded side by side, in one vector of a
-  /// simulated shader worker. Call before the ray is given to shade().
+  /// simulated shader worker, by kShaderKindNames. Call before the ray is given to shade().
   virtual std::uint32_t shader(const RayResult& /*result*/) const { return 0; }
+
+  /// What a program of a simulated shader worker finds of a completed ray. Call before the ray is given to shade().
+  virtual ShadeFacts shade_facts(const RayResult& result) const {
+    ShadeFacts facts;
+    facts[ShadeFact::kHit] = result.hit.valid() ? 1.0f : 0.0f;
+    facts[ShadeFact::kShadow] = result.tag.kind == RayKind::kShadow ? 1.0f : 0.0f;
+    facts[ShadeFact::kBounce] = static_cast<float>(result.tag.bounce);
+    return facts;
+  }
 
   /// The places in memory of the path of a ray in flight.
   virtual PathMemory path_memory(const RayTag& /*tag*/) const { return {}; }

@@ -138,6 +138,26 @@ void describe(V& v, const ShadeVectors& r) {
   v.field("shaders", r.shaders, "shaders", "mean of the different shaders of a vector, which run one after the other");
 }
 
+/// The programs of shader workers (`shading.program`).
+struct ShaderPrograms {
+  ShadeProgramCounts counts;
+  std::uint64_t registers = 0, vectors_held = 0, store_bytes = 0;
+  std::optional<double> occupancy{}, lane_fill{}, issue_rate{};
+};
+
+template <class V>
+void describe(V& v, const ShaderPrograms& r) {
+  v.field("registers", r.registers, "registers", "registers of a ray, those of the largest program");
+  v.field("vectors_held", r.vectors_held, "vectors", "vectors that the registers of a worker hold at most");
+  v.field("store_bytes", r.store_bytes, "bytes", "instructions of all programs");
+  v.field("occupancy", r.occupancy, "fraction", "vectors that a worker held in its mean working cycle, of the most");
+  v.field("lane_fill", r.lane_fill, "fraction",
+          "lanes that had a ray at the instruction, of those of all instructions issued");
+  v.field("issue_rate", r.issue_rate, "instructions/cycle",
+          "instructions that a worker issued in its mean working cycle");
+  describe(v, r.counts);
+}
+
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
   std::optional<double> utilisation{};
@@ -148,6 +168,7 @@ struct Shading {
   EffectsSaved saved{};
   std::vector<ShaderClass> classes{};
   std::optional<ShadeVectors> vectors{};
+  std::optional<ShaderPrograms> programs{};
   std::optional<EffectsProof> proof{};
 };
 
@@ -162,6 +183,7 @@ void describe(V& v, const Shading& r) {
           "products of the surfaces' effects, beyond those of plain surfaces (cycle)");
   v.field("lookups", r.lookups, "lookups", "filtered texture lookups at surfaces (cycle)");
   v.section("vectors", r.vectors, "vectors of the workers, with shading.lanes (cycle)");
+  v.section("programs", r.programs, "the programs of the workers, with shading.program (cycle)");
   v.section("effects", r.effects, "every effect of light");
   v.field("effects_choice", r.effects_choice, "",
           "shading.effects: auto, all, or the list; a list changes digest.image");

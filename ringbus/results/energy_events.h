@@ -7,6 +7,7 @@
 #include "core/config/parts.h"
 #include "core/statistics/byte_row.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/statistics/shading_counts.h"
 
 namespace carousel::ringbus {
 
@@ -29,6 +30,7 @@ struct EnergyEvents {
   std::uint64_t l2_lines = 0, asked_ahead = 0, l1_lines = 0;
   PartCounts<Parts> parts;
   std::uint64_t shaded = 0, products = 0, lookups = 0;
+  ShadeProgramCounts programs;    ///< of shader workers
   std::uint64_t activations = 0;  ///< of rows of DRAM with banks
 };
 

@@ -31,6 +31,7 @@ class LightSet {
   explicit LightSet(const scene::Scene& scene, bool punctual = true, bool primitives = true, bool sky = true);
 
   bool empty() const { return choice_.empty(); }
+  std::uint32_t count() const { return empty() ? 0 : sky_index() + (has_sky() ? 1 : 0); }
   /// Precondition: !empty().
   LightSample sample(const LightDraw& draw, const Vec3& origin, SpawnOffset offset) const;
 

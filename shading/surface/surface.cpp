@@ -36,12 +36,6 @@ Vec2 on_sphere(const TrianglePoint& p) {
   return {0.5f + std::atan2(n.x, n.z) * (0.5f * kInvPi), std::acos(glm::clamp(n.y, -1.0f, 1.0f)) * kInvPi};
 }
 
-Vec2 texture_coordinates(const TrianglePoint& p, const scene::TextureUse& use) {
-  const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
-  if (!uvs.empty()) return transform_uv(use, interpolate(uvs, p));
-  return transform_uv(use, p.mesh == &no_vertices() ? on_sphere(p) : Vec2{0, 0});
-}
-
 Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use, Encoding encoding) {
   return lookup(scene, use.texture, texture_coordinates(p, use), encoding);
 }
@@ -88,6 +82,12 @@ Vec3 bend(const scene::Scene& scene, const TrianglePoint& p, const TriangleGeome
 }
 
 }  // namespace
+
+Vec2 texture_coordinates(const TrianglePoint& p, const scene::TextureUse& use) {
+  const std::vector<Vec2>& uvs = uv_set(*p.mesh, use);
+  if (!uvs.empty()) return transform_uv(use, interpolate(uvs, p));
+  return transform_uv(use, p.mesh == &no_vertices() ? on_sphere(p) : Vec2{0, 0});
+}
 
 TrianglePoint triangle_point(const scene::Scene& scene, std::uint32_t instance, std::uint32_t primitive, float u,
                              float v) {

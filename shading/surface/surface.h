@@ -64,6 +64,9 @@ Vec3 shading_normal(const scene::Scene& scene, const TrianglePoint& point, const
 std::optional<Vec3> texture_tangent(const TrianglePoint& point, const TriangleGeometry& geometry,
                                     const scene::TextureUse& use, const Vec3& n);
 
+/// Where the point is in a texture of the material; (0, 0) without coordinates.
+Vec2 texture_coordinates(const TrianglePoint& point, const scene::TextureUse& use);
+
 /// The value of a texture of the material at the point.
 Vec3 texture_color(const scene::Scene& scene, const TrianglePoint& point, const scene::TextureUse& use,
                    Encoding encoding);

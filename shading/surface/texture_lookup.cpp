@@ -45,6 +45,12 @@ bool usable(float x) {
   return x > -kFarthest && x < kFarthest;
 }
 
+/// A texel without a value, which is noted.
+struct Noted {
+  Noted operator*(float) const { return {}; }
+  Noted operator+(Noted) const { return {}; }
+};
+
 /// The values of `texel(image, x, y)`, filtered by the texture's sampler.
 template <class Texel>
 auto filtered(const scene::Texture& texture, const scene::Image& image, const Vec2& uv, const Texel& texel) {
@@ -81,6 +87,18 @@ Vec3 lookup(const scene::Scene& scene, TextureId id, const Vec2& uv, Encoding en
   const scene::Image& image = scene.images[texture.image.value];
   if (image.width == 0 || image.height == 0) return Vec3{1};
   return filtered(texture, image, uv, [&](std::uint32_t x, std::uint32_t y) { return texel(image, x, y, encoding); });
+}
+
+std::vector<std::uint64_t> texels_of(const scene::Scene& scene, TextureId id, const Vec2& uv) {
+  const scene::Texture& texture = scene.textures[id.value];
+  const scene::Image& image = scene.images[texture.image.value];
+  std::vector<std::uint64_t> out;
+  if (image.width == 0 || image.height == 0) return out;
+  filtered(texture, image, uv, [&](std::uint32_t x, std::uint32_t y) {
+    out.push_back(std::uint64_t{y} * image.width + x);
+    return Noted{};
+  });
+  return out;
 }
 
 float lookup_alpha(const scene::Scene& scene, TextureId id, const Vec2& uv) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 #include "core/types/vec.h"
 #include "scene/model/scene.h"
@@ -20,6 +21,9 @@ std::uint32_t wrapped(std::int64_t i, std::int64_t size, scene::Wrap wrap);
 /// by the texture's sampler, between texel centres, on linear values. An image without pixels is white;
 /// coordinates that are not finite read its first texel.
 Vec3 lookup(const scene::Scene& scene, TextureId texture, const Vec2& uv, Encoding encoding);
+
+/// The texels that lookup() reads, numbered by rows; none if the image has no pixels.
+std::vector<std::uint64_t> texels_of(const scene::Scene& scene, TextureId texture, const Vec2& uv);
 
 /// Looks the alpha channel up in the same way; it is linear in any image.
 float lookup_alpha(const scene::Scene& scene, TextureId texture, const Vec2& uv);

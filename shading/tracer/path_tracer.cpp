@@ -55,6 +55,7 @@ PathTracer::PathTracer(const scene::Scene& scene, const Config& config, std::siz
               plan_.on(Effect::kShadowRays)),
       media_(plan_.on(Effect::kVolume)),
       panes_(has_panes(plan_)),
+      tables_(scene),
       pool_(max_paths_in_flight, paths_.count(), plan_.on(Effect::kShadowRays) ? max_depth_ : 0, media_),
       film_(u32(config.image.width), u32(config.image.height), u32(config.image.samples)),
       workers_(std::make_unique<Worker[]>(workers)),
@@ -130,14 +131,32 @@ void PathTracer::sky_reads(const RayResult& result, std::vector<SkyRead>& out) c
   lights_.append_sky_reads(sampler_.light(path.pixel, path.sample, result.tag.bounce), out);
 }
 
+ShadeFacts PathTracer::shade_facts(const RayResult& result) const {
+  ShadeFacts facts = Workload::shade_facts(result);
+  const ShadeWork work = extra_work(result);
+  facts[ShadeFact::kLast] = result.tag.bounce + 1u >= max_depth_ ? 1.0f : 0.0f;
+  facts[ShadeFact::kLights] = static_cast<float>(lights_.count());
+  facts[ShadeFact::kLookups] = static_cast<float>(work.lookups);
+  facts[ShadeFact::kProducts] = static_cast<float>(work.products);
+  const Hit& hit = result.hit;
+  if (!hit.valid()) return facts;
+  const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
+  facts[ShadeFact::kEmissive] = is_emissive(*point.material) ? 1.0f : 0.0f;
+  facts[ShadeFact::kAlpha] = static_cast<float>(point.material->alpha_mode);
+  // A shadow ray looks at no surface but a pane.
+  const Surface& surface = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
+  if (result.tag.kind != RayKind::kShadow || surface.pane) tables_.reads(hit, point, facts);
+  return facts;
+}
+
 std::uint32_t PathTracer::shader(const RayResult& result) const {
-  constexpr std::uint32_t kMiss = 0, kShadow = 1, kFirstSurface = 2;
+  constexpr std::uint32_t kMiss = 0, kShadow = 1;
   const Hit& hit = result.hit;
   if (result.tag.kind == RayKind::kShadow) return kShadow;
   if (!hit.valid()) return kMiss;
   const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
   const Surface& surface = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
-  return kFirstSurface + static_cast<std::uint32_t>(surface.code);
+  return kFirstSurfaceKind + static_cast<std::uint32_t>(surface.code);
 }
 
 void PathTracer::shade_shadow(const RayResult& result, Worker& worker, RayBatch& out, std::uint32_t& children) {

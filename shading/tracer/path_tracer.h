@@ -25,6 +25,7 @@
 #include "shading/surface/surface.h"
 #include "shading/surface/surface_layers.h"
 #include "shading/tracer/ray_recorder.h"
+#include "shading/tracer/shade_tables.h"
 #include "shading/tracer/surface_class.h"
 
 namespace carousel::shading {
@@ -64,6 +65,7 @@ class PathTracer : public Workload {
   /// Shading a miss, a shadow ray, or a hit of one class of surfaces.
   std::uint32_t shader(const RayResult& result) const override;
   void sky_reads(const RayResult& result, std::vector<SkyRead>& out) const override;
+  ShadeFacts shade_facts(const RayResult& result) const override;
   PathMemory path_memory(const RayTag& tag) const override {
     return {plan_.path_state_bytes(), pool_.state(tag.path).pixel};
   }
@@ -165,6 +167,7 @@ class PathTracer : public Workload {
   bool any_work_ = false;          ///< a material has extra_work()
   ShadeWork miss_work_;            ///< of a ray that leaves the scene
   std::vector<Surface> surfaces_;  // by material
+  const ShadeTables tables_;
   PathPool pool_;
   Film film_;
   std::unique_ptr<Worker[]> workers_;

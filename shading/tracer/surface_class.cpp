@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "core/types/shader_kind.h"
 #include "shading/surface/material_properties.h"
 
 namespace carousel::shading {
@@ -9,10 +10,8 @@ namespace carousel::shading {
 using scene::Material;
 
 std::string_view class_name(SurfaceClass surface) {
-  constexpr std::array<std::string_view, kSurfaceClasses> kNames{
-      "unlit",   "plain", "textured", "layered", "opaque", "layered_opaque", "transmissive", "layered_transmissive",
-      "anything"};
-  return kNames[static_cast<std::size_t>(surface)];
+  static_assert(kFirstSurfaceKind + kSurfaceClasses == kCameraKind);
+  return kShaderKindNames[kFirstSurfaceKind + static_cast<std::size_t>(surface)];
 }
 
 namespace {

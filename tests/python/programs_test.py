@@ -357,6 +357,50 @@ class Messages(unittest.TestCase):
         self.assertIn("expected 1 unit, found 2", self.refused(hit, more=cycle + "testers: {procedural: 2}\n"))
         self.assertIn("lanes in step", self.refused(hit, more=cycle + "testers: {simd: {lanes: 4}}\n"))
 
+    def shader_refused(self, program, shading="program: own", name="own"):
+        folder = Folder()
+        lines = "".join(f"        - {line}\n" for line in program)
+        (folder.path / "own.yaml").write_text(
+            f"scene: {{builtin: cornell}}\nengine: {{kind: cycle}}\nshading: {{{shading}}}\n"
+            f"programs:\n  shaders:\n    {name}:\n      program:\n{lines}")
+        outcome = folder.run(None, "own.yaml")
+        self.assertEqual(outcome.returncode, 2, outcome.stderr)
+        self.assertFalse((folder.path / "out").exists())
+        return outcome.stderr
+
+    def test_a_fault_of_a_shader_stands_at_its_word(self):
+        for program, position, message in (
+                (["load a, 1", "read b, materal"], "9:19", "expected one of material, vertices, found 'materal'"),
+                (["hit hit, hit, hit, hit"], "8:11", "expected an instruction, found 'hit'"),
+                (["add a, ox, hit"], "8:18", "expected a register that is set, found 'ox'"),
+                (["mov lights, hit"], "8:15", "belongs to the ray and is only read"),
+                (["trace b"], "8:17", "expected a register that is set, found 'b'"),
+                (["loop", "end"], "8:11", "expected 1 operands of loop, found 0"),
+                (["loop 65537", "end"], "8:16", "a loop states its bound"),
+                (["loop 60000", "load a, 1", "end"], "10:11", "expected smaller bounds of loops"),
+                (["texture a, a"], "8:22", "expected a register that is set, found 'a'")):
+            text = self.shader_refused(program)
+            self.assertIn(f"own.yaml:{position}: ", text)
+            self.assertIn(message, text)
+        self.assertIn("expected an instruction, found 'trace'", self.refused(["trace ox", "hit tmin, dx, dy, dz"]))
+
+    def test_workers_hold_the_programs_that_are_named(self):
+        plain = ["load a, 1"]
+        self.assertIn("shading.program.default: expected a name of programs.shaders, or built_in, found 'owe'; did you "
+                      "mean 'own'?", self.shader_refused(plain, "program: owe"))
+        self.assertIn("shading.program.miss: expected a name", self.shader_refused(plain, "program: {default: own, miss: b}"))
+        self.assertIn("expected shading.program.default beside it", self.shader_refused(plain, "program: {miss: own}"))
+        self.assertIn("the largest program has 10 registers for each of 4 lanes; expected 40 at least, found 39",
+                      self.shader_refused(plain, "program: own, lanes: 4, registers: 39"))
+        self.assertIn("built_in is no name for a program of your own",
+                      self.shader_refused(plain, "workers: 1", "built_in"))
+        self.assertIn("expected false with shading.program, found true",
+                      self.shader_refused(plain, "program: own, idle_resources_shade: true"))
+        self.assertIn("expected a multiple of line_bytes, which are 64, found 100",
+                      self.shader_refused(plain, "program: own, instruction_cache: {bytes: 100}"))
+        self.assertIn("expected a multiple of the 8 bytes of an instruction, found 60",
+                      self.shader_refused(plain, "program: own, instruction_cache: {line_bytes: 60}"))
+
 
 if __name__ == "__main__":
     unittest.main(warnings="ignore")

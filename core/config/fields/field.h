@@ -18,6 +18,7 @@ namespace carousel::config {
 //   section(key, struct or optional struct, meaning)
 //   section_or_number(key, struct, meaning)     a bare number stands for {units: number}
 //   section_or_choice(key, struct, meaning)     a bare word stands for {hits: word}
+//   section_or_text(key, struct, meaning)       a bare word stands for {default: word}
 //   list(key, vector of struct, meaning)
 //   choices(key, vector of enum, meaning)
 //   texts(key, vector of texts, meaning)

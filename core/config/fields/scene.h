@@ -49,24 +49,36 @@ struct AnimationConfig {
   float time = 0;
 };
 
-/// The time of an instruction by its class, from its issue until its result may be read.
+struct ProgramParameters {
+  std::map<std::string, double> values;  ///< by name
+};
+
+/// A program of shader workers.
+struct ShaderConfig {
+  ProgramParameters parameters;
+  std::vector<std::string> program;  ///< an instruction each
+};
+
+struct ShadersConfig {
+  std::map<std::string, ShaderConfig> named;
+};
+
+/// The time of an instruction by its class, from its issue until its result may be read, and programs by name.
 struct ProgramsConfig {
-  std::int64_t simple_cycles = 4, product_cycles = 4, divide_cycles = 16, branch_cycles = 2;
+  std::int64_t simple_cycles = 4, product_cycles = 4, divide_cycles = 16, branch_cycles = 2, texture_cycles = 8,
+               trace_cycles = 4;
+  ShadersConfig shaders;
 };
 
 struct PrimitiveBounds {
   Vec3 low{-1}, high{1};
 };
 
-struct PrimitiveParameters {
-  std::map<std::string, double> values;  ///< by name
-};
-
 /// A primitive whose hits an intersection program finds (core/program).
 struct PrimitiveConfig {
   PrimitiveBounds bounds;
   double offset = 1e-4;
-  PrimitiveParameters parameters;
+  ProgramParameters parameters;
   std::vector<std::string> program;  ///< an instruction each
 };
 
@@ -144,6 +156,22 @@ inline constexpr IntRange kInstructionCycles{1, 255};
 inline constexpr RealRange kModelSpace{-1e6, 1e6};
 
 template <class V>
+void describe(V& v, ProgramParameters& c) {
+  v.others(c.values, RealRange{-1e30, 1e30}, "", "A number that the program loads by this name.");
+}
+
+template <class V>
+void describe(V& v, ShaderConfig& c) {
+  v.section("parameters", c.parameters, "Numbers that the program loads.");
+  v.texts("program", c.program, "The instructions, one a line (docs/reference/instructions.md).");
+}
+
+template <class V>
+void describe(V& v, ShadersConfig& c) {
+  v.members(c.named, "A program of this name, which shading.program names.");
+}
+
+template <class V>
 void describe(V& v, ProgramsConfig& c) {
   v.field("simple_cycles", c.simple_cycles, kInstructionCycles, "cycles",
           "The time from a sum, a comparison or a move until its result may be read. A unit issues one instruction a "
@@ -152,17 +180,17 @@ void describe(V& v, ProgramsConfig& c) {
   v.field("divide_cycles", c.divide_cycles, kInstructionCycles, "cycles", "Likewise for div and sqrt.");
   v.field("branch_cycles", c.branch_cycles, kInstructionCycles, "cycles",
           "The time from an if, else, loop, end, break or stop until the next instruction is issued.");
+  v.field("texture_cycles", c.texture_cycles, kInstructionCycles, "cycles",
+          "The time in which a shader worker filters the texels of a texture, from when they have come.");
+  v.field("trace_cycles", c.trace_cycles, kInstructionCycles, "cycles",
+          "The time in which a shader worker writes a new ray, until the next instruction is issued.");
+  v.section("shaders", c.shaders, "Programs of shader workers.");
 }
 
 template <class V>
 void describe(V& v, PrimitiveBounds& c) {
   v.field("low", c.low, kModelSpace, "model units", "The lower corner of the box. A hit outside of the box is none.");
   v.field("high", c.high, kModelSpace, "model units", "The upper corner.");
-}
-
-template <class V>
-void describe(V& v, PrimitiveParameters& c) {
-  v.others(c.values, RealRange{-1e30, 1e30}, "", "A number that the program loads by this name.");
 }
 
 template <class V>

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -8,6 +9,7 @@
 #include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 #include "core/config/fields/queue_kind.h"
+#include "core/types/shader_kind.h"
 
 namespace carousel {
 
@@ -15,6 +17,22 @@ namespace carousel {
 struct RayFlags {
   enum class Cull { kNone, kBack, kFront } cull = Cull::kNone;
   bool force_opaque = false;
+};
+
+/// The programs of shader workers: of each kind of work (kShaderKindNames), and where that is empty of all others.
+struct ShaderProgramsConfig {
+  static constexpr std::string_view kConstant = "constant", kBuiltIn = "built_in";  ///< names that are no programs
+
+  std::string standard{kConstant};
+  std::array<std::string, kShaderKinds> of_kind{};
+
+  bool any() const { return standard != kConstant; }
+  const std::string& of(std::size_t kind) const { return of_kind[kind].empty() ? standard : of_kind[kind]; }
+};
+
+/// What a shader worker fetches the instructions of programs through.
+struct InstructionCacheConfig {
+  std::int64_t bytes = 0, line_bytes = 64, miss_cycles = 40;
 };
 
 struct ShadingConfig {
@@ -25,6 +43,9 @@ struct ShadingConfig {
   } effects;
   bool idle_resources_shade = false;
   std::int64_t cycles_per_shade = 20;
+  ShaderProgramsConfig program;
+  std::int64_t registers = 4096;
+  InstructionCacheConfig instruction_cache;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
   std::int64_t cycles_per_any_hit = 10, cycles_per_lookup = 5, products_per_cycle = 8;
   std::int64_t lanes = 1, sort_rays_per_cycle = 4;
@@ -61,6 +82,25 @@ void describe(V& v, RayFlags& c) {
 }
 
 template <class V>
+void describe(V& v, ShaderProgramsConfig& c) {
+  v.field("default", c.standard, "",
+          "The program of all work that no key beside this one names. A program is one of programs.shaders, or with "
+          "built_in that of this program's own shading code; with constant there is none.");
+  for (std::size_t kind = 0; kind < kShaderKinds; ++kind)
+    v.field(kShaderKindNames[kind], c.of_kind[kind], "",
+            "The program for this kind: rays that left the scene, shadow rays, hits by the class of their surface "
+            "(shading.classes of the report), and the making of camera rays.");
+}
+
+template <class V>
+void describe(V& v, InstructionCacheConfig& c) {
+  v.field("bytes", c.bytes, IntRange{0, 1 << 24}, "bytes",
+          "The size of the cache of a shader worker, which is direct-mapped. With 0 all instructions are at hand.");
+  v.field("line_bytes", c.line_bytes, IntRange{8, 4096}, "bytes", "The size of a line, 8 bytes an instruction.");
+  v.field("miss_cycles", c.miss_cycles, kCycles, "cycles", "The time until a line is there that was not.");
+}
+
+template <class V>
 void describe(V& v, ShadingConfig& c) {
   v.field_or_auto("workers", c.workers, IntRange{1, 256}, "workers",
                   "The number of shader workers. With auto the cycle engine has two for each resource, and the native "
@@ -73,6 +113,15 @@ void describe(V& v, ShadingConfig& c) {
       .only(EngineKind::kCycle, "shading by idle resources", true);
   v.field("cycles_per_shade", c.cycles_per_shade, IntRange{0, 1'000'000}, "cycles",
           "The time to shade a ray that hit a plain surface or nothing.");
+  v.section_or_text("program", c.program,
+                    "The programs that take the time of shading, in place of cycles_per_shade, cycles_per_lookup and "
+                    "products_per_cycle. A name stands for {default: NAME}.");
+  v.field("registers", c.registers, IntRange{1, 1 << 20}, "registers",
+          "With a program, the registers of a shader worker, of 32 bits. They hold as many vectors of `lanes` rays as "
+          "have room with the registers of the largest program, 64 at most.")
+      .relax("shading_registers", Better::kTwice, Relaxed{}, c.program.any());
+  v.section("instruction_cache", c.instruction_cache,
+            "What a shader worker fetches the instructions of programs through.");
   v.field("cycles_per_lookup", c.cycles_per_lookup, IntRange{0, 1'000'000}, "cycles",
           "The additional time for each filtered texture lookup at a surface.");
   v.field("products_per_cycle", c.products_per_cycle, IntRange{0, 4096}, "products/cycle",

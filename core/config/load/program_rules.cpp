@@ -8,6 +8,7 @@
 
 #include "core/config/own_sections.h"
 #include "core/config/primitive_program.h"
+#include "core/config/shader_programs.h"
 #include "core/text/edit_distance.h"
 
 namespace carousel::config {
@@ -33,6 +34,9 @@ class ProgramRules {
     for (const auto& [name, primitive] : c_.primitives.named) primitive_is_whole(name, primitive);
     for (std::size_t i = 0; i < c_.scene.objects.size(); ++i) object_has_a_primitive(i);
     if (!c_.scene.objects.empty() && c_.engine.kind == EngineKind::kCycle) one_unit_a_program();
+    const std::size_t before = issues_.size();
+    shaders_are_whole();
+    if (shaders_are_known() && issues_.size() == before) workers_hold_their_programs();
   }
 
  private:
@@ -53,19 +57,86 @@ class ProgramRules {
                      fmt::format("expected low below high along each axis, found {} and {} along {}",
                                  primitive.bounds.low[axis], primitive.bounds.high[axis], "xyz"[axis]));
     ProgramFault fault;
-    if (program_of(primitive, c_.programs, fault)) return every_parameter_is_loaded(key, primitive);
-    const std::string line =
-        primitive.program.empty() ? key + ".program" : fmt::format("{}.program.{}", key, fault.line);
+    if (program_of(primitive, c_.programs, fault))
+      every_parameter_is_loaded(key, primitive.program, primitive.parameters);
+    else
+      at_its_word(key, primitive.program, std::move(fault));
+  }
+
+  void at_its_word(const std::string& key, const std::vector<std::string>& program, ProgramFault fault) {
+    const std::string line = program.empty() ? key + ".program" : fmt::format("{}.program.{}", key, fault.line);
     SourcePosition at = positions_.find(line);
     if (at.column > 0) at.column += static_cast<int>(fault.column);
     issues_.push_back({std::move(at), line, std::move(fault.message)});
   }
 
-  void every_parameter_is_loaded(const std::string& key, const PrimitiveConfig& primitive) {
-    for (const auto& [name, value] : primitive.parameters.values)
-      if (std::ranges::none_of(primitive.program, [&](const std::string& text) { return loads(text, name); }))
+  void every_parameter_is_loaded(const std::string& key, const std::vector<std::string>& program,
+                                 const ProgramParameters& parameters) {
+    for (const auto& [name, value] : parameters.values)
+      if (std::ranges::none_of(program, [&](const std::string& text) { return loads(text, name); }))
         issue(key + ".parameters." + name,
               "the program loads no number of this name; expected an instruction that does");
+  }
+
+  void shaders_are_whole() {
+    for (const auto& [name, shader] : c_.programs.shaders.named) {
+      const std::string key = "programs.shaders." + name;
+      ProgramFault fault;
+      if (name == ShaderProgramsConfig::kBuiltIn || name == ShaderProgramsConfig::kConstant)
+        issue(key, fmt::format("{} is no name for a program of your own; expected another", name));
+      else if (shader_of(name, 0, c_.programs, fault))
+        every_parameter_is_loaded(key, shader.program, shader.parameters);
+      else
+        at_its_word(key, shader.program, std::move(fault));
+    }
+  }
+
+  /// Returns whether all programs that shading.program names are there.
+  bool shaders_are_known() {
+    const std::size_t before = issues_.size();
+    const auto known = [&](const std::string& key, const std::string& name) {
+      if (name == ShaderProgramsConfig::kBuiltIn || c_.programs.shaders.named.contains(name)) return;
+      std::vector<std::string> names{std::string(ShaderProgramsConfig::kBuiltIn)};
+      for (const auto& [own, shader] : c_.programs.shaders.named) names.push_back(own);
+      const auto near = nearest_name(name, names);
+      issue(key, fmt::format("expected a name of programs.shaders, or built_in, found '{}'{}", name,
+                             near ? fmt::format("; did you mean '{}'?", *near)
+                                  : fmt::format("; known are {}", fmt::join(names, ", "))));
+    };
+    const ShaderProgramsConfig& program = c_.shading.program;
+    if (program.any()) known("shading.program.default", program.standard);
+    for (std::size_t kind = 0; kind < kShaderKinds; ++kind) {
+      if (program.of_kind[kind].empty()) continue;
+      const std::string key = fmt::format("shading.program.{}", kShaderKindNames[kind]);
+      if (!program.any())
+        issue(key, "work that has no key of its own needs a program too; expected shading.program.default beside it");
+      else
+        known(key, program.of_kind[kind]);
+    }
+    return program.any() && issues_.size() == before;
+  }
+
+  /// The programs that shader workers run, all of which compile.
+  void workers_hold_their_programs() {
+    const ShadingConfig& shading = c_.shading;
+    const ShadePrograms programs = shade_programs(shading, c_.programs);
+    if (programs.registers * static_cast<std::size_t>(shading.lanes) > static_cast<std::size_t>(shading.registers))
+      issue("shading.registers",
+            fmt::format("the largest program has {} registers for each of {} lanes; expected {} at least, found {}",
+                        programs.registers, shading.lanes, programs.registers * static_cast<std::size_t>(shading.lanes),
+                        shading.registers));
+    if (shading.idle_resources_shade)
+      issue("shading.idle_resources_shade",
+            "resources have no units that run shader programs, which is not built; expected false with "
+            "shading.program, found true");
+    const InstructionCacheConfig& cache = shading.instruction_cache;
+    if (cache.line_bytes % kInstructionBytes != 0)
+      issue("shading.instruction_cache.line_bytes",
+            fmt::format("expected a multiple of the {} bytes of an instruction, found {}", kInstructionBytes,
+                        cache.line_bytes));
+    else if (cache.bytes % cache.line_bytes != 0)
+      issue("shading.instruction_cache.bytes",
+            fmt::format("expected a multiple of line_bytes, which are {}, found {}", cache.line_bytes, cache.bytes));
   }
 
   void object_has_a_primitive(std::size_t i) {

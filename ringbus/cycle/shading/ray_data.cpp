@@ -1,6 +1,7 @@
 #include "ringbus/cycle/shading/ray_data.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "ringbus/results/memory_request.h"
@@ -12,8 +13,11 @@ namespace {
 // Places in the simulated memory, beyond shapes and spilled entries.
 constexpr std::uint64_t kRecords = std::uint64_t{1} << 50, kStates = std::uint64_t{1} << 51,
                         kFilm = std::uint64_t{1} << 52, kSky = kFilm + (std::uint64_t{1} << 51);
+/// The tables that programs read, by ShadeData.
+constexpr std::array<std::uint64_t, kShadeData> kTables{
+    kSky + (std::uint64_t{1} << 48), kSky + (std::uint64_t{1} << 49), kSky + (std::uint64_t{1} << 50)};
 constexpr std::uint32_t kPixelBytes = 16;  // four floats
-static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky && kSky < kMemoryEnd);
+static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky && kTables.back() < kMemoryEnd);
 
 MemoryConfig of_shared_cache(MemoryConfig memory) {
   memory.l1_kib = 0;
@@ -111,6 +115,18 @@ bool RayData::fetch_for_shading(const RayResult& ray, Cycle now) {
   return true;
 }
 
+void RayData::read(ShadeData what, const DataRead& data, const ProgramRead& by, Cycle now) {
+  const std::uint32_t index = begin();
+  waiting_[index].kind = Kind::kProgram;
+  waiting_[index].missing = 1;
+  waiting_[index].read = by;
+  const ShapeSpan span{kTables[static_cast<std::size_t>(what)] + data.offset, data.bytes};
+  port_of(span).request(span, index, now);
+  constexpr std::array<std::uint64_t RayDataBytes::*, kShadeData> kBytes{
+      &RayDataBytes::materials_read, &RayDataBytes::vertices_read, &RayDataBytes::texels_read};
+  bytes_.*kBytes[static_cast<std::size_t>(what)] += span.bytes;
+}
+
 void RayData::made(std::span<const RayRequest> rays, Cycle now) {
   for (const RayRequest& ray : rays) {
     if (ray.tag.path >= in_flight_.size()) in_flight_.resize(ray.tag.path + std::size_t{1});
@@ -150,7 +166,10 @@ Cycle RayData::next() const {
   return first;
 }
 
-void RayData::take(Cycle now, HitBatch& rays, std::vector<Group>& groups) {
+void RayData::take(Cycle now, Arrived& arrived) {
+  arrived.rays.clear();
+  arrived.groups.clear();
+  arrived.reads.clear();
   for (ShapePort& port : ports_) {
     while (port.next() <= now) {
       const std::uint32_t index = port.take();
@@ -158,10 +177,12 @@ void RayData::take(Cycle now, HitBatch& rays, std::vector<Group>& groups) {
       if (--waiting.missing > 0) continue;
       free_.push_back(index);
       if (waiting.kind == Kind::kRecord) {
-        groups.push_back(std::move(waiting.group));
+        arrived.groups.push_back(std::move(waiting.group));
         waiting.group = {};
       } else if (waiting.kind == Kind::kShading) {
-        rays.push_back(waiting.ray);
+        arrived.rays.push_back(waiting.ray);
+      } else if (waiting.kind == Kind::kProgram) {
+        arrived.reads.push_back(waiting.read);
       } else {
         const ShapeSpan span = pixel_at(waiting.pixel);
         port.write(span, now);

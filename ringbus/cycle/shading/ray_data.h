@@ -9,6 +9,7 @@
 #include "core/config/fields/topology.h"
 #include "core/statistics/ray_bytes.h"
 #include "core/types/workload.h"
+#include "ringbus/cycle/shading/programs/program_memory.h"
 #include "ringbus/cycle/shapes/shape_port.h"
 #include "ringbus/protocol/machine.h"
 
@@ -22,14 +23,14 @@ namespace carousel::ringbus::cycle {
 /// - `memory.path_state: memory`: the state of a path is written for each ray that is made for it, and read when one
 ///   has come back, before that joins the queue of a worker.
 /// - `memory.sky_map: memory`: what shading a ray reads of the map of the sky is read when the ray has come back,
-/// before
-///   it joins the queue of a worker.
+///   before it joins the queue of a worker.
 /// - `memory.film: memory`: when the last ray of a path has been shaded, its pixel is read, and written when it has
 ///   come.
 ///
 /// Nothing waits for a write. A place in memory is reached by one L2 only, so that the caches need no protocol: a
 /// record by that of its resource, others by turns.
-class RayData {
+/// - what programs of shader workers read (`shading.program`) is read while they run.
+class RayData final : public ProgramMemory {
  public:
   struct Settings {
     MemoryConfig memory;
@@ -67,22 +68,32 @@ class RayData {
   /// These rays have been shaded, and the rays that they cause are made.
   void shaded(const HitBatch& rays, Cycle now);
 
+  std::uint64_t line_bytes() const override { return line_bytes_; }
+  void read(ShadeData what, const DataRead& data, const ProgramRead& by, Cycle now) override;
+
   /// The time of the next answer.
   Cycle next() const;
-  /// Takes the answers: appends rays whose data has come to `rays`, and groups whose records have come to `groups`.
-  void take(Cycle now, HitBatch& rays, std::vector<Group>& groups);
+  /// What has come.
+  struct Arrived {
+    HitBatch rays;                   ///< to be shaded
+    std::vector<Group> groups;       ///< their records
+    std::vector<ProgramRead> reads;  ///< of programs
+  };
+  /// Takes the answers, in place of what `arrived` had.
+  void take(Cycle now, Arrived& arrived);
 
   const RayDataBytes& bytes() const { return bytes_; }
   std::uint64_t lines() const;  ///< asked for
 
  private:
-  enum class Kind : std::uint32_t { kRecord, kShading, kFilm };
+  enum class Kind : std::uint32_t { kRecord, kShading, kFilm, kProgram };
   struct Waiting {
     Kind kind = Kind::kRecord;
     std::size_t missing = 0;  // reads
     Group group;              // kRecord
     RayResult ray;            // kShading
     std::uint32_t pixel = 0;  // kFilm
+    ProgramRead read;         // kProgram
   };
 
   std::uint32_t begin();

@@ -15,14 +15,18 @@ ShadeWorkers::ShadeWorkers(const ShadingSettings& settings, const std::vector<Si
       by_shader_(settings.shading.lanes > 1),
       queues_(settings.shading, settings.workers, settings.seed),
       answer_wires_(clients.size(), SideWire(settings.link, control_latency(settings.link))),
-      jobs_(settings.workers) {
+      cores_(settings.programs ? std::make_unique<ShadeCores>(settings.shading, settings.programs, settings.workers,
+                                                              settings.vectors, workload)
+                               : nullptr),
+      jobs_(settings.workers * settings.vectors) {
   if (settings.shading.sort == ShadingConfig::Sort::kShader)
     sorter_ = std::make_unique<ShadeSorter>(static_cast<std::size_t>(settings.shading.sort_rays_per_cycle));
-  for (std::uint32_t w = static_cast<std::uint32_t>(settings.workers); w-- > 0;) idle_.push_back(w);
+  for (auto place = static_cast<std::uint32_t>(jobs_.size()); place-- > 0;) idle_.push_back(place);
 }
 
 Cycle ShadeWorkers::next() const {
   Cycle first = ends_.empty() ? kNever : ends_.top().done;
+  if (cores_) first = std::min(first, cores_->next());
   for (std::uint32_t r = 0; r < clients_.size() && clients_[r].questions != nullptr; ++r)
     first = std::min(first, clients_[r].questions->next());
   return sorter_ ? std::min(first, sorter_->next()) : first;
@@ -46,6 +50,7 @@ void ShadeWorkers::take_arrivals(Cycle now) {
 
 bool ShadeWorkers::start(Cycle now) {
   bool any = false;
+  if (cores_) order_idle();
   // The worker that fell idle last comes first.
   for (std::size_t i = idle_.size(); i-- > 0;) {
     if (!start_job(idle_[i], now)) {
@@ -58,34 +63,72 @@ bool ShadeWorkers::start(Cycle now) {
   return any;
 }
 
-bool ShadeWorkers::start_job(std::uint32_t worker, Cycle now) {
-  Job& job = jobs_[worker];
+/// Places of workers that hold few jobs come last, so that they are taken first.
+void ShadeWorkers::order_idle() {
+  if (idle_.empty() || (queues_.empty() && calls_.empty() && camera_.finished())) return;
+  std::vector<std::size_t> taken(jobs_.size() / cores_->vectors());
+  for (std::size_t w = 0; w < taken.size(); ++w) taken[w] = cores_->held(w);
+  std::sort(idle_.begin(), idle_.end(), std::greater<>());
+  std::vector<std::pair<std::size_t, std::uint32_t>> ordered;
+  for (std::size_t i = idle_.size(); i-- > 0;) ordered.emplace_back(taken[worker_of(idle_[i])]++, idle_[i]);
+  std::sort(ordered.begin(), ordered.end(), std::greater<>());
+  for (std::size_t i = 0; i < idle_.size(); ++i) idle_[i] = ordered[i].second;
+}
+
+bool ShadeWorkers::start_job(std::uint32_t place, Cycle now) {
+  Job& job = jobs_[place];
   job.began = now;
-  Cycle done = now;
-  std::size_t rays = 1;
+  job.rays = 1;
   if (!calls_.empty()) {
     job.call = std::move(calls_.front());
     calls_.pop_front();
-    done += costs_.any_hit_calls(job.call->rays.times);
-  } else if (queues_.take(worker, job.vector)) {
+  } else if (queues_.take(worker_of(place), job.vector)) {
     for (const RayResult& ray : job.vector.rays) recorder_.begin_shading(ray, now);
-    rays = job.vector.rays.size();
-    done += costs_.begin(job.vector);
-  } else if (rays = camera_.take(job.made); rays > 0) {
-    done += costs_.camera_rays(rays);
-  } else {
+    job.rays = job.vector.rays.size();
+  } else if (job.rays = camera_.take(job.made); job.rays == 0) {
     return false;
   }
-  queues_.set_in_work(worker, rays);
-  ends_.push({done, worker});
+  begin(place, now);
+  set_rays(place, job.rays);
   return true;
 }
 
+/// The job of this place begins: its end is known, or that of its programs will be.
+void ShadeWorkers::begin(std::uint32_t place, Cycle now) {
+  Job& job = jobs_[place];
+  if (job.call) {
+    const Cycle cycles = costs_.any_hit_calls(job.call->rays.times);
+    ends_.push({cores_ ? cores_->occupy(place, cycles, now) : now + cycles, place});
+  } else if (job.made.empty()) {
+    if (cores_)
+      cores_->begin(place, job.vector.rays, now);
+    else
+      ends_.push({now + costs_.begin(job.vector), place});
+  } else if (cores_) {
+    cores_->begin_camera_rays(place, job.rays, now);
+  } else {
+    ends_.push({now + costs_.camera_rays(job.rays), place});
+  }
+}
+
+/// Tells the queues how many rays a worker has in work.
+void ShadeWorkers::set_rays(std::uint32_t place, std::size_t rays) {
+  jobs_[place].rays = rays;
+  if (!cores_) return queues_.set_in_work(place, rays);
+  const std::uint32_t worker = worker_of(place);
+  std::size_t sum = 0;
+  for (std::size_t i = 0; i < cores_->vectors(); ++i) sum += jobs_[worker * cores_->vectors() + i].rays;
+  queues_.set_in_work(worker, sum);
+}
+
 ShadeWorkers::Job& ShadeWorkers::end_job(JobEnd end) {
-  Job& job = jobs_[end.worker];
-  busy_ += end.done - job.began;
-  idle_.push_back(end.worker);
-  queues_.set_in_work(end.worker, 0);
+  Job& job = jobs_[end.place];
+  if (cores_)
+    cores_->release(end.place, end.done);
+  else
+    busy_ += end.done - job.began;
+  idle_.push_back(end.place);
+  set_rays(end.place, 0);
   return job;
 }
 

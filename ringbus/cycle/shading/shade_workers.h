@@ -13,6 +13,7 @@
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/shading/camera_rays.h"
+#include "ringbus/cycle/shading/programs/shade_cores.h"
 #include "ringbus/cycle/shading/shade_costs.h"
 #include "ringbus/cycle/shading/shade_queues.h"
 #include "ringbus/cycle/shading/shade_sorter.h"
@@ -24,7 +25,8 @@ namespace carousel::ringbus::cycle {
 /// The pool of shader workers, and what waits for them.
 ///
 /// A worker answers any-hit calls first, because their rays keep slots that could be free. Otherwise it takes the rays
-/// that have waited longest in its queue, as many as it has lanes. If no ray waits it makes camera rays.
+/// that have waited longest in its queue, as many as it has lanes. If no ray waits it makes camera rays. Where workers
+/// run programs a worker has a place for each vector that it holds, and the worker that holds fewest goes first.
 /// Keeps references to all that it is given.
 class ShadeWorkers {
  public:
@@ -41,6 +43,7 @@ class ShadeWorkers {
   /// `on_made(rays, began)` for camera rays, and answers any-hit calls. Returns false if no job has ended.
   template <class OnMade>
   bool finish(Cycle now, HitBatch& shaded, OnMade&& on_made) {
+    if (cores_) cores_->step(now, [&](std::uint32_t place) { ends_.push({now, place}); });
     const bool any = !ends_.empty() && ends_.top().done <= now;
     for (; !ends_.empty() && ends_.top().done <= now; ends_.pop()) {
       Job& job = end_job(ends_.top());
@@ -62,10 +65,21 @@ class ShadeWorkers {
 
   /// Rays that wait for a worker.
   std::size_t waiting() const { return queues_.size() + (sorter_ ? sorter_->size() : 0); }
-  std::size_t working() const { return jobs_.size() - idle_.size(); }
+  std::size_t working() const { return cores_ ? cores_->working() : jobs_.size() - idle_.size(); }
   /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
-  Cycle busy() const { return busy_; }
-  const ShadeCosts& costs() const { return costs_; }
+  Cycle busy() const { return cores_ ? cores_->busy() : busy_; }
+  /// The work of all rays that began to be shaded.
+  ShadingCounts counts() const {
+    ShadingCounts out = costs_.counts();
+    out.busy = busy_;
+    if (cores_) cores_->add_to(out);
+    return out;
+  }
+  /// Where programs read; before the first step.
+  void read_through(ProgramMemory& memory) {
+    if (cores_) cores_->read_through(memory);
+  }
+  void answer(const ProgramRead& read, Cycle now) { cores_->answer(read, now); }
 
  private:
   /// Any-hit calls of a resource.
@@ -73,21 +87,28 @@ class ShadeWorkers {
     std::uint32_t from;
     AnyHitQuestion rays;
   };
-  /// The present work of a worker: any-hit calls, or camera rays if there are any in `made`, or else `vector`.
+  /// The present work of a place: any-hit calls, or camera rays if there are any in `made`, or else `vector`.
   struct Job {
     Cycle began = 0;
     RayBatch made;
     ShadeVector vector;
     std::optional<Call> call{};
+    std::size_t rays = 0;
   };
-  /// The end of a job. Of jobs that end at one time that of the first worker goes first.
+  /// The end of a job. Of jobs that end at one time that of the first place goes first.
   struct JobEnd {
     Cycle done = 0;
-    std::uint32_t worker = 0;
-    bool operator>(const JobEnd& o) const { return done != o.done ? done > o.done : worker > o.worker; }
+    std::uint32_t place = 0;
+    bool operator>(const JobEnd& o) const { return done != o.done ? done > o.done : place > o.place; }
   };
 
-  bool start_job(std::uint32_t worker, Cycle now);
+  std::uint32_t worker_of(std::uint32_t place) const {
+    return cores_ ? static_cast<std::uint32_t>(place / cores_->vectors()) : place;
+  }
+  bool start_job(std::uint32_t place, Cycle now);
+  void begin(std::uint32_t place, Cycle now);
+  void set_rays(std::uint32_t place, std::size_t rays);
+  void order_idle();
   Job& end_job(JobEnd end);
   void answer(Job& job, Cycle now);
 
@@ -101,9 +122,10 @@ class ShadeWorkers {
   ShadeQueues queues_;
   std::deque<Call> calls_;
   std::vector<SideWire> answer_wires_;  // by resource
-  std::vector<Job> jobs_;               // by worker
+  std::unique_ptr<ShadeCores> cores_;   // where workers run programs
+  std::vector<Job> jobs_;               // by place
   std::priority_queue<JobEnd, std::vector<JobEnd>, std::greater<>> ends_;
-  std::vector<std::uint32_t> idle_;  // workers, the next one last
+  std::vector<std::uint32_t> idle_;  // places, the next one last
   Cycle busy_ = 0;
 };
 

@@ -27,6 +27,7 @@ ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Wo
 void ShadingAgent::keep_in_memory(std::unique_ptr<RayData> data) {
   data_ = std::move(data);
   placement_.keep_in_memory(*data_);
+  workers_.read_through(*data_);
 }
 
 Cycle ShadingAgent::next() const {
@@ -81,11 +82,10 @@ void ShadingAgent::take_completed(Cycle now) {
 }
 
 void ShadingAgent::take_ray_data(Cycle now) {
-  stated_.clear();
-  loaded_groups_.clear();
-  data_->take(now, stated_, loaded_groups_);
-  for (const RayResult& ray : stated_) workers_.add(ray, now);
-  for (RayData::Group& group : loaded_groups_) placement_.send_group(group.issuer, std::move(group.rays), now);
+  data_->take(now, arrived_);
+  for (const RayResult& ray : arrived_.rays) workers_.add(ray, now);
+  for (const ProgramRead& read : arrived_.reads) workers_.answer(read, now);
+  for (RayData::Group& group : arrived_.groups) placement_.send_group(group.issuer, std::move(group.rays), now);
 }
 
 bool ShadingAgent::finish_jobs(Cycle now) {

@@ -63,11 +63,7 @@ class ShadingAgent final : public Agent {
   /// Worker-cycles spent on jobs that are done.
   Cycle busy() const { return workers_.busy(); }
   /// The work of all rays that began to be shaded.
-  ShadingCounts counts() const {
-    ShadingCounts out = workers_.costs().counts();
-    out.busy = busy();
-    return out;
-  }
+  ShadingCounts counts() const { return workers_.counts(); }
   /// How long rays were in slots, from being given one until their hit came to shading.
   const Log2Histogram& residence() const { return placement_.slots().residence(); }
   const Trace& trace() const { return trace_; }
@@ -107,8 +103,8 @@ class ShadingAgent final : public Agent {
   RayPlacement placement_;
   ResourceLoss loss_;
   ShadingSamples samples_;
-  HitBatch shaded_, stated_;                   // scratch
-  std::vector<RayData::Group> loaded_groups_;  // scratch
+  HitBatch shaded_;           // scratch
+  RayData::Arrived arrived_;  // scratch
   bool started_ = false;
   Cycle now_ = 0;
   Cycle next_ = 0;  // next(), at the end of the last run()

@@ -2,11 +2,13 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 
 #include "core/config/fields/bundles.h"
 #include "core/config/fields/faults.h"
 #include "core/config/fields/shading.h"
 #include "core/config/fields/topology.h"
+#include "core/program/shade_programs.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -20,7 +22,9 @@ struct ShadingSettings {
   std::size_t slots = 0;        ///< slots of all resources
   std::size_t packet_rays = 1;  ///< new rays that make a group
   std::uint64_t seed = 1;
-  bool addressed = false;  ///< rays travel to the resources that they name
+  std::shared_ptr<const ShadePrograms> programs{};  ///< null: shading takes constant times
+  std::size_t vectors = 1;                          ///< that a worker holds at once
+  bool addressed = false;                           ///< rays travel to the resources that they name
 };
 
 }  // namespace carousel::ringbus::cycle

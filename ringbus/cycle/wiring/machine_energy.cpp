@@ -64,6 +64,7 @@ void read_energy(const SimulatedMachine& machine, EnergyEvents& events) {
   events.shaded = machine.shading().completed();
   events.products = shading.products;
   events.lookups = shading.lookups;
+  events.programs = shading.programs;
   events.activations = 0;
   for (const auto& memory : machine.memory().memories()) events.activations += memory->activations();
 }

@@ -1,10 +1,8 @@
 #include "ringbus/cycle/wiring/machine_kinds.h"
 
-#include "ringbus/cycle/shading/ray_data.h"
-
 namespace carousel::ringbus::cycle {
 
-MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const MemoryConfig& memory, bool has_sky_map,
+MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const MemoryConfig& memory, bool ray_data,
                            const TestersConfig::Distributor* distributor, Traversal traversal) {
   const auto width = static_cast<std::uint64_t>(link.bytes_per_cycle);
   const ControlKinds control(list, width);
@@ -13,7 +11,7 @@ MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const Memo
   const AnyHitKinds any_hit(list, width);
   const HelpKinds help(list, width);
   MachineKinds kinds{{control, fetch, any_hit, help}, lines};
-  if (RayData::wanted(memory, has_sky_map)) kinds.ray_data.emplace(list, memory, width);
+  if (ray_data) kinds.ray_data.emplace(list, memory, width);
   if (memory.fetch == MemoryConfig::Fetch::kMulticast) kinds.side.pushed = pushed_kind(list, memory);
   if (distributor != nullptr) kinds.distributor.emplace(list, *distributor, traversal, width);
   if (memory.l1_kib > 0) kinds.own_caches.emplace(list, memory);

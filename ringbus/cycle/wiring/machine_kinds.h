@@ -16,8 +16,9 @@ struct MachineKinds {
   std::optional<OwnCacheKinds> own_caches{};
 };
 
-/// `distributor`: null, unless the machine's testers stand behind one.
-MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const MemoryConfig& memory, bool has_sky_map,
+/// `ray_data`: ray control and shading have data in memory. `distributor`: null, unless the machine's testers stand
+/// behind one.
+MachineKinds machine_kinds(ChannelList& list, const LinkConfig& link, const MemoryConfig& memory, bool ray_data,
                            const TestersConfig::Distributor* distributor, Traversal traversal);
 
 }  // namespace carousel::ringbus::cycle

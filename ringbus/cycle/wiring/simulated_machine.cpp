@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/config/own_sections.h"
+#include "core/config/shader_programs.h"
 #include "core/system/error.h"
 #include "ringbus/cycle/tile/independent_tile.h"
 #include "ringbus/cycle/tile/tile.h"
@@ -52,7 +53,17 @@ AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory,
   return out;
 }
 
+bool has_ray_data(const Config& config) {
+  const bool sky_map =
+      config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty();
+  return RayData::wanted(config.memory, sky_map) || config.shading.program.any();
+}
+
 ShadingSettings shading_settings(const Config& config) {
+  std::shared_ptr<const ShadePrograms> programs;
+  if (config.shading.program.any())
+    programs = std::make_shared<const ShadePrograms>(shade_programs(config.shading, config.programs));
+  const std::size_t vectors = programs ? vectors_held(config.shading, *programs) : 1;
   return {config.shading,
           config.bundles,
           config.topology.link,
@@ -61,6 +72,8 @@ ShadingSettings shading_settings(const Config& config) {
           static_cast<std::size_t>(all_slots(config)),
           static_cast<std::size_t>(config.packets.rays),
           static_cast<std::uint64_t>(config.image.seed),
+          std::move(programs),
+          vectors,
           config.rays.placement == Placement::kAddressed};
 }
 
@@ -115,10 +128,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       network_(channels_, shared_, config.topology, config.faults, contexts_of(config),
                MachineClocks(config.engine.clock_mhz, config.clocks.synchroniser_cycles),
                ParcelNetwork::shared_wires(plan_, numbers_)),
-      kinds_(machine_kinds(
-          channels_, config.topology.link, config.memory,
-          config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty(),
-          has_distributor(config) ? &config.testers.distributor : nullptr, config.collections.traversal)),
+      kinds_(machine_kinds(channels_, config.topology.link, config.memory, has_ray_data(config),
+                           has_distributor(config) ? &config.testers.distributor : nullptr,
+                           config.collections.traversal)),
       parts_(channels_, numbers_, config.parts, config.memory, config.topology.link, shared_.topology.resources()) {
   if (plan_.any())
     parcels_ = std::make_unique<ParcelNetwork>(channels_, plan_, numbers_, shared_.topology, network_,

@@ -9,6 +9,10 @@
 
 namespace carousel {
 
+/// All shading takes a cycle.
+inline const std::vector<std::string> kShortShaders{"programs.shaders.NAME.program=['load a, 1']",
+                                                    "shading.program.default=NAME", "shading.workers=1"};
+
 /// One row, or several, for every key.
 inline std::vector<KeyRow> key_rows() {
   using enum BaseMachine;
@@ -234,6 +238,21 @@ inline std::vector<KeyRow> key_rows() {
       {"shading.effects", kLayers, {}, {"all", "[sky]"}},
       {"shading.idle_resources_shade", kTerrain, {"shading.cycles_per_shade=200"}},
       {"shading.cycles_per_shade", kTerrain, {}, {"60"}},
+      {"shading.program.default", kTerrain, {}, {"built_in"}},
+      {"shading.program.miss", kTerrain, kShortShaders, {"built_in"}},
+      {"shading.program.shadow", kTerrain, kShortShaders, {"built_in"}},
+      {"shading.program.plain", kTerrain, kShortShaders, {"built_in"}},
+      {"shading.program.camera", kTerrain, kShortShaders, {"built_in"}},
+      {"shading.registers", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"256"}},
+      {"shading.instruction_cache.bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"256"}},
+      {"shading.instruction_cache.line_bytes",
+       kTerrain,
+       {"shading.program.default=built_in", "shading.workers=1", "shading.instruction_cache.bytes=512"},
+       {"256"}},
+      {"shading.instruction_cache.miss_cycles",
+       kTerrain,
+       {"shading.program.default=built_in", "shading.workers=1", "shading.instruction_cache.bytes=512"},
+       {"400"}},
       {"shading.cycles_per_lookup", kLayers, {}, {"60"}},
       {"shading.products_per_cycle", kLayers, {}, {"1"}},
       {"shading.cycles_per_any_hit", kLayers, {"testers.any_hit=shader"}, {"60"}},
@@ -284,6 +303,21 @@ inline std::vector<KeyRow> key_rows() {
       {"primitives.NAME.offset", kOwn, {}, {"0.3"}},
       {"primitives.NAME.parameters", kOwn, {}, {"{r: 0.3}"}},
       {"primitives.NAME.program", kOwn, {}, {"['load t, r', 'hit t, dx, dy, dz']"}},
+      {"programs.texture_cycles",
+       kTerrain,
+       {"programs.shaders.NAME.program=['load a, 1', 'texture b, a', 'mov c, b']", "shading.program.default=NAME",
+        "shading.workers=1"},
+       {"60"}},
+      {"programs.trace_cycles", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"60"}},
+      {"programs.shaders.NAME.program",
+       kTerrain,
+       {"programs.shaders.NAME.program=['load a, 1']", "shading.program.default=NAME"},
+       {"['load a, 1', 'sqrt a, a', 'sqrt a, a', 'sqrt a, a']"}},
+      {"programs.shaders.NAME.parameters",
+       kTerrain,
+       {"programs.shaders.NAME={parameters: {n: 0}, program: ['load n, n', 'if n', 'loop 90', 'end', 'end']}",
+        "shading.program.default=NAME"},
+       {"{n: 1}"}},
       {"programs.simple_cycles", kOwn, {}, {"60"}},
       {"programs.product_cycles", kOwn, {}, {"60"}},
       {"programs.divide_cycles", kOwn, {}, {"60"}},
@@ -327,6 +361,14 @@ inline std::vector<std::string> keys_without_a_row() {
       "workload.plugin",
       "workload.options",
       "prefetcher.rule",
+      "shading.program.unlit",  // these are as shading.program.plain, for other materials
+      "shading.program.textured",
+      "shading.program.layered",
+      "shading.program.opaque",
+      "shading.program.layered_opaque",
+      "shading.program.transmissive",
+      "shading.program.layered_transmissive",
+      "shading.program.anything",
       "testers.dispatch",  // it has one value without a plugin; plugins_run_test.cpp has another
   };
 }

@@ -100,6 +100,11 @@ class RandomFiller : public config::RowVisitor<RandomFiller> {
     fill(value);
   }
   template <class T>
+  void section_or_text(std::string_view, T& value, const char*) {
+    fill(value);
+    if (value.standard.empty()) value.standard = "constant";  // an empty text is not written
+  }
+  template <class T>
   void list(std::string_view, std::vector<T>& value, const char*) {
     value.resize(pick(3));
     for (T& item : value) fill(item);

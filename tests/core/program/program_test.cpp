@@ -120,10 +120,10 @@ TEST(Program, HoldsNoMoreThanAUnitDoes) {
   std::vector<std::string> lines;
   for (int i = 0; i < 57; ++i) lines.push_back("mov r" + std::to_string(i) + ", ox");
   EXPECT_THAT(fault_of(lines).message, HasSubstr("64 registers at most"));
-  lines.assign(1025, "mov a, ox");
+  lines.assign(4097, "mov a, ox");
   const ProgramFault long_one = fault_of(lines);
-  EXPECT_THAT(long_one.message, HasSubstr("1024 instructions at most"));
-  EXPECT_EQ(long_one.line, 1024u);
+  EXPECT_THAT(long_one.message, HasSubstr("4096 instructions at most"));
+  EXPECT_EQ(long_one.line, 4096u);
   EXPECT_EQ(long_one.column, 0u);
 }
 
