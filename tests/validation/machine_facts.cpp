@@ -22,6 +22,7 @@
 #include "app/run/prepare.h"
 #include "app/run/render_job.h"
 #include "core/config/write.h"
+#include "core/program/built_in_shaders.h"
 #include "core/system/error.h"
 #include "core/types/wrapped_workload.h"
 #include "ringbus/cycle/cycle_engine.h"
@@ -33,6 +34,12 @@ namespace carousel {
 namespace {
 
 using Json = nlohmann::json;
+
+Json json(const std::vector<DataRead>& reads) {
+  Json out = Json::array();
+  for (const DataRead& read : reads) out.push_back({read.offset, read.bytes});
+  return out;
+}
 
 Json number(float value) {
   return std::isfinite(value) ? Json(value) : Json();
@@ -125,6 +132,11 @@ class RecordedWorkload final : public WrappedWorkload {
       inner_.sky_reads(result, reads);
       ray["sky"] = Json::array();
       for (const SkyRead& read : reads) ray["sky"].push_back({read.offset, read.bytes});
+      const ShadeFacts seen = inner_.shade_facts(result);
+      ray["facts"] = seen.value;
+      ray["reads"] = {{"material", json(seen.material)}, {"vertices", json(seen.vertices)}};
+      ray["reads"]["lookups"] = Json::array();
+      for (const std::vector<DataRead>& lookup : seen.lookups) ray["reads"]["lookups"].push_back(json(lookup));
       ray["children"] = Json::array();
       const std::size_t before = out.size();
       inner_.shade(worker, {result}, out);
@@ -269,7 +281,10 @@ Json run(const std::string& file) {
     ray["name"] = name;
     rays.push_back(std::move(ray));
   }
+  Json built_in = Json::array();
+  for (std::size_t kind = 0; kind < kShaderKinds; ++kind) built_in.push_back(built_in_shader(kind));
   return {{"config", Json(config_json(config))},
+          {"built_in", std::move(built_in)},
           {"scene_size", prepared.scene_size()},
           {"width", prepared.accel.width},
           {"max_depth", prepared.accel.max_depth},

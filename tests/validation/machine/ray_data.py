@@ -4,6 +4,7 @@ from .memory import ShapePort
 
 RECORDS, STATES, FILM = 1 << 50, 1 << 51, 1 << 52
 SKY = FILM + (1 << 51)
+TABLES = {"material": SKY + (1 << 48), "vertices": SKY + (1 << 49), "texels": SKY + (1 << 50)}
 RECORD, PIXEL = 64, 16
 
 
@@ -60,7 +61,8 @@ class RayData:
         self.paths = PathStates()
         caches = ceil_div(config["topology"]["resources"], self.shared)
         own = dict(config, memory=dict(m, l1_kib=0))
-        used = self.records or self.film or sky or m.get("path_state") == "memory"
+        programs = config["shading"]["program"]["default"] != "constant"
+        used = programs or self.records or self.film or sky or m.get("path_state") == "memory"
         self.ports = [ShapePort(own, clock) for _ in range(caches if used else 0)]
 
     def record_of(self, ray):
@@ -108,18 +110,25 @@ class RayData:
                 span = FILM + PIXEL * self.pixels[path], PIXEL
                 self.port(span).request(span, span, now)
 
+    def program_read(self, what, offset, size, by, now):
+        span = TABLES[what] + offset, size
+        self.port(span).request(span, [by], now)
+
     def take(self, now):
-        """Rays whose states have come, and groups whose records have."""
-        rays, groups = [], []
+        """Rays whose states have come, groups whose records have, and what programs read."""
+        rays, groups, reads = [], [], []
         for port in self.ports:
             while port.answers.ready(now):
                 what = port.answers.take()
                 if isinstance(what, tuple):
                     port.request(what, None, now)
                     continue
+                if isinstance(what, list):
+                    reads += what
+                    continue
                 what.missing -= 1
                 if what.missing == 0 and isinstance(what, Records):
                     groups.append(what)
                 elif what.missing == 0:
                     rays.append(what.ray)
-        return rays, groups
+        return rays, groups, reads

@@ -3,6 +3,7 @@ import heapq
 from collections import deque
 
 from .clock import ceil_div
+from .shaders import Cores
 from .travel import Sender
 from .tree import Ray
 
@@ -165,7 +166,11 @@ class Shading:
         self.queues = Queues(config)
         self.lanes = s["lanes"]
         self.sorter = Sorter(s["sort_rays_per_cycle"]) if s["sort"] == "shader" else None
-        self.idle = list(range(s["workers"] - 1, -1, -1))  # the next one last
+        self.cores = Cores(machine) if s["program"]["default"] != "constant" else None
+        self.held = self.cores.vectors if self.cores else 1  # places of a worker
+        self.idle = list(range(s["workers"] * self.held - 1, -1, -1))  # the next one last
+        self.in_work = [0] * len(self.idle)
+        self.running = {}  # by place, what its programs work on
         self.jobs = []  # (end, worker, rays that it shades, names of the camera rays that it makes)
         self.gathered = []
         self.load_free = [0] * self.node
@@ -183,7 +188,9 @@ class Shading:
                     self.control.free[r].extend(ray.slot for ray in rays)
                 for ray in self.data.completed(rays, now):
                     self.to_be_shaded(ray, now)
-        stated, loaded = self.data.take(now)
+        stated, loaded, reads = self.data.take(now)
+        for read in reads:
+            self.cores.answer(read, now)
         for ray in stated:
             self.to_be_shaded(ray, now)
         while self.sorter and self.sorter.rays and self.sorter.rays[0][0] <= now:
@@ -209,11 +216,13 @@ class Shading:
 
     def finish_jobs(self, now):
         shaded, any_done = [], False
+        for place in self.cores.step(now) if self.cores else ():
+            heapq.heappush(self.jobs, (now, place, *self.running.pop(place)))
         while self.jobs and self.jobs[0][0] <= now:
             _, worker, rays, names = heapq.heappop(self.jobs)
             any_done = True
             self.idle.append(worker)
-            self.queues.in_work[worker] = 0
+            self.set_in_work(worker, 0)
             if rays:
                 shaded += rays
                 continue
@@ -234,6 +243,8 @@ class Shading:
 
     def start_jobs(self, now):
         any_started = False
+        if self.cores:
+            self.idle = self.cores.order(self.idle)
         for worker in reversed(list(self.idle)):
             if self.start_job(worker, now):
                 self.idle.remove(worker)
@@ -250,10 +261,15 @@ class Shading:
             longest[ray.fact["shader"]] = max(longest.get(ray.fact["shader"], 0), cycles)
         return sum(longest.values())
 
+    def set_in_work(self, place, rays):
+        self.in_work[place] = rays
+        first = place // self.held * self.held
+        self.queues.in_work[place // self.held] = sum(self.in_work[first:first + self.held])
+
     def start_job(self, worker, now):
-        rays, names = self.queues.take(worker), []
+        rays, names, end = self.queues.take(worker // self.held), [], now
         if rays:
-            end = now + self.cycles(rays)
+            end += 0 if self.cores else self.cycles(rays)
         else:
             names = self.camera[self.made:self.made + self.room()]
             if not names:
@@ -263,13 +279,17 @@ class Shading:
                 self.data.paths.begin(name[0])
             self.making += len(names)
             end = now + self.shade * ceil_div(len(names), self.lanes)
-        self.queues.in_work[worker] = len(names) or len(rays)
+        self.set_in_work(worker, len(names) or len(rays))
+        if self.cores:
+            self.running[worker] = rays, names
+            self.cores.begin(worker, [ray.fact for ray in rays] or len(names), now)
+            return True
         heapq.heappush(self.jobs, (end, worker, rays, names))
         self.clock.wake(end)
         return True
 
     def place(self, now):
-        last = self.queues.empty() and not self.jobs and not (self.sorter and self.sorter.rays)
+        last = self.queues.empty() and not self.jobs and not self.running and not (self.sorter and self.sorter.rays)
         if self.sender:
             if len(self.gathered) >= self.group or (last and self.gathered):
                 self.sender.submit(self.gathered)

@@ -3,7 +3,77 @@ import math
 import pathlib
 import random
 
+import programs
+
+from .shaders import FACTS, KINDS
+
 SKY_MAP = pathlib.Path(__file__).resolve().parents[3] / "configs/maps/evening.hdr"
+
+
+class DrawnProgram:
+    """A random program of shader workers, which leaves no register unset on any way."""
+
+    def __init__(self, r):
+        self.r, self.lines, self.set = r, [], list(FACTS)
+        self.body(r.randint(1, 12), 0)
+        self.lines = self.lines or ["load a, 1"]
+
+    def register(self):
+        return f"r{self.r.randint(0, 7)}"
+
+    def body(self, count, depth):
+        for _ in range(count):
+            self.one(depth)
+
+    def one(self, depth):
+        r, known = self.r, list(self.set)
+        kind = r.random()
+        if kind < 0.1 and depth < 2:
+            self.lines.append(f"loop {r.randint(1, 3)}")
+            self.body(r.randint(1, 4), depth + 1)
+            if r.random() < 0.5:
+                self.lines.append(f"break {r.choice(known)}")
+            self.body(r.randint(0, 2), depth + 1)
+            self.lines.append("end")
+            self.set = known
+        elif kind < 0.3 and depth < 3:
+            self.lines.append(f"if {r.choice(self.set)}")
+            self.body(r.randint(0, 4), depth + 1)
+            if r.random() < 0.5:
+                self.set = list(known)
+                self.lines.append("else")
+                self.body(r.randint(1, 4), depth + 1)
+            self.lines.append("end")
+            self.set = known
+        elif kind < 0.33:
+            self.lines.append(f"stop {r.choice(self.set)}")
+        elif kind < 0.4:
+            self.lines.append(f"trace {r.choice(self.set)}")
+        else:
+            to = self.register()
+            name = r.choice(["load", "read", "read", "texture", *programs.VALUES])
+            if name in ("load", "read"):
+                operands = [str(r.choice([0, 1, 2.5])) if name == "load" else r.choice(["material", "vertices"])]
+            else:
+                count = 1 if name == "texture" else programs.VALUES[name].__code__.co_argcount
+                operands = [r.choice(self.set) for _ in range(count)]
+            self.lines.append(f"{name} {to}, " + ", ".join(operands))
+            if to not in self.set:
+                self.set.append(to)
+
+
+def draw_programs(r, config):
+    shading = config["shading"]
+    names = r.choice([["a"], ["a", "b"], ["a", "built_in"]])
+    kinds = [kind for kind in KINDS if r.random() < 0.3]
+    shading["program"] = {"default": names[0], **{kind: r.choice(names) for kind in kinds}}
+    shading["registers"] = shading["lanes"] * 64 * r.choice([1, 1, 2, 5])
+    line = r.choice([16, 64])
+    shading["instruction_cache"] = {"bytes": line * r.choice([0, 1, 4, 32]), "line_bytes": line,
+                                    "miss_cycles": r.choice([1, 7, 40])}
+    config["programs"] = {kind + "_cycles": r.choice([1, 2, 5, 12])
+                          for kind in ("simple", "product", "divide", "branch", "texture", "trace")}
+    config["programs"]["shaders"] = {name: {"program": DrawnProgram(r).lines} for name in names if name != "built_in"}
 
 
 def draw(seed, index):
@@ -133,6 +203,9 @@ def draw(seed, index):
         config["testers"]["simd"]["lanes"] = 1
         memory["shape_buffer_kib"] = max(memory["shape_buffer_kib"], 64)
     draw_treelets(random.Random(seed * 1000003 + index + 1), config)  # leaves the draws below as they are
+    own = random.Random(seed * 1000003 + index + 2)
+    if own.random() < 0.3:
+        draw_programs(own, config)
     if r.random() < 0.25:
         scene["sky"] = {"file": str(SKY_MAP), "rotation": pick([0, 75])}
         memory["sky_map"] = pick(["free", "memory", "memory"])
