@@ -67,14 +67,14 @@ struct Accel {
   HitSink* all_hits = nullptr;      ///< takes the hits of rays with kRayAll, set before tracing; null: no ray has it
   NearestSink* nearest_hits = nullptr;  ///< takes the hits of rays that look for several, set before tracing; or null
   std::shared_ptr<const GaussianShapes> gaussians;  ///< null: the scene consists of surfaces
-  std::vector<RayProgram> programs;     ///< of primitives; kept by no rank apart, as a unit holds them all
-  AccuracyConfig accuracy;              ///< arithmetic of the tests on it
-  bool procedural_primitives = false;   ///< there are some
-  bool has_non_opaque = false;          ///< some primitives have kNonOpaqueBit
-  int width = kMaxWidth;                ///< children a node at most
-  int max_depth = 0;                    ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
-  std::size_t baked_instances = 0;      ///< singular transforms, stored as world-space triangles
-  std::size_t promoted_instances = 0;   ///< nearly singular ones, whose rays are transformed in double
+  std::vector<RayProgram> programs;                 ///< of primitives; kept by no rank apart, as a unit holds them all
+  AccuracyConfig accuracy;                          ///< arithmetic of the tests on it
+  bool procedural_primitives = false;               ///< there are some
+  bool has_non_opaque = false;                      ///< some primitives have kNonOpaqueBit
+  int width = kMaxWidth;                            ///< children a node at most
+  int max_depth = 0;                                ///< strips on the longest way down: TLAS nodes + BLAS nodes + leaf
+  std::size_t baked_instances = 0;                  ///< singular transforms, stored as world-space triangles
+  std::size_t promoted_instances = 0;               ///< nearly singular ones, whose rays are transformed in double
 
   /// A hit that is reported costs a call.
   bool calls_any_hit() const { return (has_non_opaque && any_hit != nullptr) || all_hits != nullptr; }

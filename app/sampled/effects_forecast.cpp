@@ -50,7 +50,7 @@ void foretell_effects(const Prepared& p, const RenderJob& job, report::Report& r
   const Config& config = p.config();
   const bool picture = config.workload.kind == WorkloadConfig::Kind::kRays;
   if (!picture || report.incomplete || !report.engine.cycles || !job.divisible() || job.first_rays() == 0) return;
-  if (job.sample() != nullptr) return;  // a part of the frame, which is made longer by its fill and drain
+  if (job.sample() != nullptr) return;       // a part of the frame, which is made longer by its fill and drain
   if (config.shading.program.any()) return;  // which takes its time for all effects at once
   if (config.shading.effects.choice != ShadingConfig::Effects::Choice::kAuto || !report.shading.utilisation) return;
   Config everything = config;

@@ -54,7 +54,8 @@ std::size_t vectors_held(const ShadingConfig& shading, const ShadePrograms& prog
   constexpr std::size_t kMostVectors = 64;
   const auto room = static_cast<std::size_t>(shading.registers);
   // A machine that the search for the bottleneck makes better has wider vectors, and room for one.
-  return std::clamp<std::size_t>(room / (programs.registers * static_cast<std::size_t>(shading.lanes)), 1, kMostVectors);
+  return std::clamp<std::size_t>(room / (programs.registers * static_cast<std::size_t>(shading.lanes)), 1,
+                                 kMostVectors);
 }
 
 }  // namespace carousel

@@ -9,9 +9,9 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/exponential.h"
 #include "core/types/vec.h"
 #include "shading/bsdf/lambert.h"
-#include "core/numeric/exponential.h"
 
 namespace carousel::shading {
 

@@ -5,9 +5,9 @@
 
 #include <glm/common.hpp>
 
+#include "core/numeric/exponential.h"
 #include "shading/bsdf/fresnel.h"
 #include "shading/bsdf/ggx.h"
-#include "core/numeric/exponential.h"
 #include "shading/math/trigonometry.h"
 
 namespace carousel::shading {

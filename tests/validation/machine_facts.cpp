@@ -283,20 +283,13 @@ Json run(const std::string& file) {
   }
   Json built_in = Json::array();
   for (std::size_t kind = 0; kind < kShaderKinds; ++kind) built_in.push_back(built_in_shader(kind));
-  return {{"config", Json(config_json(config))},
-          {"built_in", std::move(built_in)},
-          {"scene_size", prepared.scene_size()},
-          {"width", prepared.accel.width},
-          {"max_depth", prepared.accel.max_depth},
-          {"ways", prepared.accel.most_ways()},
-          {"levels", prepared.accel.levels()},
-          {"nodes", tree.json()},
-          {"camera", workload.camera()},
-          {"pixels", workload.pixels()},
-          {"state_bytes", workload.state_bytes()},
-          {"rays", std::move(rays)},
-          {"cycles", result.cycle->cycles},
-          {"steps", std::move(steps)}};
+  return {{"config", Json(config_json(config))},   {"built_in", std::move(built_in)},
+          {"scene_size", prepared.scene_size()},   {"width", prepared.accel.width},
+          {"max_depth", prepared.accel.max_depth}, {"ways", prepared.accel.most_ways()},
+          {"levels", prepared.accel.levels()},     {"nodes", tree.json()},
+          {"camera", workload.camera()},           {"pixels", workload.pixels()},
+          {"state_bytes", workload.state_bytes()}, {"rays", std::move(rays)},
+          {"cycles", result.cycle->cycles},        {"steps", std::move(steps)}};
 }
 
 }  // namespace

@@ -98,7 +98,8 @@ TEST(PacketProcessConfig, WhatItDoesNotHaveIsRefused) {
   };
   refused("collections: {home: hash}\n",
           "collections.home: the packet_process keeps the collections of its resources; expected issuer, found hash");
-  refused("collections: {when_full: spill}\n", "collections.when_full: p has no memory to spill to; expected reserve, or a cache that serves p");
+  refused("collections: {when_full: spill}\n",
+          "collections.when_full: p has no memory to spill to; expected reserve, or a cache that serves p");
   refused("rays: {placement: first_taker}\n", "rays.placement: new rays go to the resources of one packet_process");
   refused("bundles: {size: 4}\n", "bundles.size: bundles are placed among all resources yet");
   refused("shading: {idle_resources_shade: true}\n", "shading.idle_resources_shade: ");
