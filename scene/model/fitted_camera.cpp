@@ -53,6 +53,14 @@ std::array<double, N> extents(const Scene& scene, std::span<const Instance> show
                               const DVec3& centre, const std::array<DVec3, N>& directions) {
   std::array<double, N> out;
   out.fill(-std::numeric_limits<double>::infinity());
+  // How far the shapes of Gaussians reach depends on scene.gaussians.geometry, and their picture must not.
+  for (const Gaussian& gaussian : scene.gaussians.shapes)
+    for (std::size_t d = 0; d < N; ++d) {
+      const DVec3 local = directions[d] * DMat3(gaussian.spread);
+      out[d] = std::max(
+          out[d], glm::dot(directions[d], DVec3(gaussian.mean) - centre) + double{gaussian.reach} * glm::length(local));
+    }
+  if (!scene.gaussians.empty()) return out;
   for (const Instance& instance : shown) {
     const glm::dmat3 linear(instance.world_from_model.linear);
     const DVec3 offset = DVec3(instance.world_from_model.translation) - centre;
@@ -102,7 +110,7 @@ Camera fitted_camera(const Scene& scene, float aspect, std::span<const Instance>
 }
 
 void make_up_camera(Scene& scene, float aspect) {
-  const std::optional<Camera> inside = inside_camera(scene);
+  const std::optional<Camera> inside = scene.gaussians.empty() ? inside_camera(scene) : std::nullopt;
   scene.cameras[0] = inside ? *inside : fitted_camera(scene, aspect);
   scene.added.inside = inside.has_value();
 }

@@ -1,12 +1,15 @@
 // The view of a file that has no camera.
 #include <cmath>
+#include <vector>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "scene/builtin/builtin.h"
 #include "scene/builtin/mesh_shapes.h"
 #include "scene/model/fitted_camera.h"
 #include "scene/model/floor_plan.h"
+#include "scene/place_gaussians.h"
 
 namespace carousel::scene {
 namespace {
@@ -142,6 +145,22 @@ TEST(InsideCamera, MirroredWallsFaceTheOtherWay) {
   scene = room(true);
   scene.instances[0].world_from_model.linear[2].z = -1;
   EXPECT_TRUE(inside_camera(scene));
+}
+
+// Triangles reach farther than ellipsoids, and both show the same picture.
+TEST(MadeUpCamera, IsTheSameForBothShapesOfGaussians) {
+  using Geometry = GaussiansConfig::Geometry;
+  std::vector<Camera> cameras;
+  for (const Geometry geometry : {Geometry::kEllipsoids, Geometry::kTriangles}) {
+    Scene scene = make_gaussians(50, 1);
+    GaussiansConfig config;
+    config.geometry = geometry;
+    place_gaussians(scene, config, "cloud");
+    make_up_camera(scene, 1.5f);
+    cameras.push_back(scene.cameras[0]);
+  }
+  EXPECT_EQ(cameras[0].name, "fitted");
+  EXPECT_EQ(cameras[0].position, cameras[1].position);
 }
 
 TEST(MadeUpCamera, SaysThatItStandsInside) {
