@@ -256,6 +256,9 @@ int accuracy_command(const AccuracyArguments& arguments) {
   if (!output) open_output(p);
   if (p.config().workload.kind != WorkloadConfig::Kind::kRays)
     throw ConfigError({{p.located.positions.find("workload"), "workload", "accuracy draws pictures; expected rays"}});
+  if (p.accel.gaussians)
+    throw ConfigError({{p.located.positions.find("scene"), "scene",
+                        "exact arithmetic knows surfaces alone; expected a scene without Gaussians"}});
   if (!p.config().bvh.file.empty())
     throw ConfigError({{p.located.positions.find("bvh.file"), "bvh.file",
                         "accuracy builds the structure at each level of accuracy; expected a configuration without "

@@ -35,13 +35,17 @@ void check_machine(const Config& c, const RuleBreach& breach) {
 /// A ray begins its next round where its walk ends, which takes a walk of its own.
 void check_rounds(const Config& c, const RuleBreach& breach) {
   const QueryConfig& query = c.rays.query;
-  const bool given = query.buffer.has_value();
+  const bool holds = query.nearest <= QueryConfig::kMostBuffered;  // so does a buffer of them all
   const auto no = [&](bool wrong, const std::string& message) {
-    if (wrong)
-      breach(given ? "rays.query.buffer" : "rays.query.nearest",
-             fmt::format("with fewer than rays.query.nearest = {} a ray finds its hits in rounds; expected {}, or {}; "
-                         "found {}",
-                         query.nearest, given ? "auto" : "at most 64", message, given ? *query.buffer : query.nearest));
+    if (!wrong) return;
+    const std::string rounds =
+        fmt::format("with fewer than rays.query.nearest = {} a ray finds its hits in rounds; expected ", query.nearest);
+    if (holds)
+      breach("rays.query.buffer", fmt::format("{}auto, or {}; found {}", rounds, message, query.buffered()));
+    else
+      breach("rays.query.nearest",
+             fmt::format("{}at most {}{}, or {}; found {}", rounds, QueryConfig::kMostBuffered,
+                         query.buffer ? " with rays.query.buffer: auto" : "", message, query.nearest));
   };
   if (c.topology.shape == TopologyShape::kIndependent) {
     no(c.engine.kind == EngineKind::kNative, "engine.kind: cycle, which alone has independent resources with rounds");
@@ -50,8 +54,7 @@ void check_rounds(const Config& c, const RuleBreach& breach) {
   }
   no(c.collections.traversal != Traversal::kOrdered || c.bvh.treelets.bytes > 0,
      "collections.traversal: ordered without bvh.treelets.bytes, as a ray that waits for several nodes at once does "
-     "not "
-     "know when a round ends");
+     "not know when a round ends");
 }
 
 }  // namespace
@@ -99,6 +102,9 @@ void require_for_gaussians(const Config& config, const KeyPositions& positions) 
      fmt::format("their shapes stay where they are; expected 0, found {}", config.scene.quantise));
   no(config.shading.camera_rays.cull == RayFlags::Cull::kFront, "shading.camera_rays.cull",
      "rays meet them at their fronts; expected none or back, found front");
+  no(!config.scene.objects.empty(), "scene.objects",
+     fmt::format("rays blend these alone, and an object is none; expected no objects, found {}",
+                 config.scene.objects.size()));
   no(!config.bvh.file.empty(), "bvh.file", "trees of files are those of other meshes; expected none");
   if (!out.empty()) throw ConfigError(std::move(out));
 }

@@ -221,6 +221,7 @@ TEST_F(Gaussians, EndWhereTheyTakeTooLittle) {
 }
 
 TEST_F(Gaussians, RefuseWhatIsNotBuilt) {
+  program_.write("run.yaml", program_.read("run.yaml") + "primitives: {cube: {program: ['hit dx, dx, dx, dx']}}\n");
   const std::vector<std::pair<std::string, std::string>> refused{
       {"rays.query.nearest=0 rays.query.buffer=auto",
        "rays.query.nearest: the scene consists of Gaussians; a ray blends the nearest hits that it finds; expected 1 "
@@ -229,6 +230,9 @@ TEST_F(Gaussians, RefuseWhatIsNotBuilt) {
       {"verify=reference", "verify: the scene consists of Gaussians; the reference knows surfaces alone"},
       {"scene.gaussians.geometry=ellipsoid", "did you mean 'ellipsoids'?"},
       {"scene.gaussians.radius=0", "scene.gaussians.radius: expected"},
+      {R"(scene.objects=[{"primitive":"cube"}])",
+       "scene.objects: the scene consists of Gaussians; rays blend these alone"},
+      {"collections.traversal=spread", "expected at most 64 with rays.query.buffer: auto, or collections.traversal"},
   };
   for (const auto& [sets, message] : refused) {
     const Outcome outcome = run(sets);
