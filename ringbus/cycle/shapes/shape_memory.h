@@ -37,14 +37,13 @@ using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
-/// each instance, from a 64-byte border on, in equal room for all of them: its transform, of groups and their members
-/// colour and opacity of its Gaussian if it stands for one, of groups and their members
-/// world boxes and a few numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised`
-/// nodes have 64 or 80 bytes, or 128 with 12 bits a plane, but for those that keep their boxes as floats
-/// (accel/builders/quantised_boxes.h), and each primitive of a leaf 64; with `bvh.leaves: strips` leaves hold
-/// LeafStrips, and with `blocks` they are accel::PackedLeaves, from a 128-byte border on. A leaf has the micromaps of
-/// its triangles in it, each behind its triangle, so that whoever reads the triangle reads them. With `bvh.treelets`
-/// nodes and leaves stand where their pieces say (accel::TreePieces).
+/// each instance, from a 64-byte border on, in equal room for all of them: its transform, colour and opacity of its
+/// Gaussian if it stands for one, of groups and their members world boxes and a few numbers besides
+/// (accel/structure/group_placement.h). With `bvh.storage: quantised` nodes have 64 or 80 bytes, or 128 with 12 bits a
+/// plane, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and each primitive of a
+/// leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips, and with `blocks` they are accel::PackedLeaves, from a
+/// 128-byte border on. A leaf has the micromaps of its triangles in it, each behind its triangle, so that whoever reads
+/// the triangle reads them. With `bvh.treelets` nodes and leaves stand where their pieces say (accel::TreePieces).
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
