@@ -31,6 +31,16 @@ Mat3 shape_of(const Gaussian& gaussian, float times) {
   return out;
 }
 
+/// A node of a file may move a Gaussian out of single precision, or stretch it beyond.
+bool is_finite(const Gaussian& gaussian) {
+  const Mat3 shape = shape_of(gaussian, 2);  // farther than the corners of its triangles
+  for (int axis = 0; axis < 3; ++axis)
+    for (int i = 0; i < 3; ++i)
+      if (!std::isfinite(gaussian.mean[i] + shape[axis][i]) || !std::isfinite(gaussian.mean[i] - shape[axis][i]))
+        return false;
+  return true;
+}
+
 void place_ellipsoids(Scene& scene, MaterialId material) {
   Mesh mesh;
   mesh.name = "unit sphere";
@@ -79,7 +89,13 @@ void place_gaussians(Scene& scene, const GaussiansConfig& config, const std::str
   scene.nodes.clear();
   scene.gaussians.geometry = config.geometry;
   scene.gaussians.opaque_below = config.opaque_below;
-  for (Gaussian& gaussian : scene.gaussians.shapes) gaussian.reach = reach_of(gaussian, config);
+  for (Gaussian& gaussian : scene.gaussians.shapes) {
+    gaussian.reach = reach_of(gaussian, config);
+    if (!is_finite(gaussian))
+      throw SceneError(file, "",
+                       "Gaussian " + std::to_string(&gaussian - scene.gaussians.shapes.data()) +
+                           " lies or reaches beyond the numbers of single precision");
+  }
   const MaterialId material(static_cast<std::uint32_t>(scene.materials.size()));
   Material& made = scene.materials.emplace_back();
   made.name = "Gaussians";

@@ -86,6 +86,20 @@ TEST_F(GaussianPly, TakesThePlaceOfAMeshOfPoints) {
   EXPECT_FALSE(is_gaussian_ply(file_));
 }
 
+TEST_F(GaussianPly, HasNoShapeBeyondSinglePrecision) {
+  PlyGaussian wide;
+  wide.scale[1] = 88;  // three deviations of 1.7e38
+  write(gaussian_ply({PlyGaussian{}, wide}));
+  SceneConfig config;
+  config.file = file_.string();
+  try {
+    load_scene(config, "");
+    FAIL();
+  } catch (const SceneError& error) {
+    EXPECT_EQ(error.message(), "Gaussian 1 lies or reaches beyond the numbers of single precision");
+  }
+}
+
 TEST_F(GaussianPly, SaysWhatIsWrong) {
   const std::string good = gaussian_ply({PlyGaussian{}});
   EXPECT_EQ(fault_of(good), "");
