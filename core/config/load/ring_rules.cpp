@@ -86,8 +86,6 @@ void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry
            fmt::format("the native engine has no ring whose stops have no queues; expected queues, or engine.kind: "
                        "cycle; found {}",
                        rule));
-  if (config.faults.links.any() && !has_traffic(config))
-    breach("faults.links", fmt::format("a ring with rule: {} has no faults yet; expected none", rule));
   if (link.depth)
     breach(key + ".depth",
            fmt::format("a ring with rule: {} holds a flit for each cycle of its latency and has no queues; expected "
@@ -120,6 +118,9 @@ void check_stop_rings(const Config& config, const Graph& graph, const RuleBreach
   const TopologyConfig& c = config.topology;
   const auto first = stop_ring_entry(c);
   if (!first) return;
+  if (config.faults.links.any() && !has_traffic(config))
+    breach("faults.links",
+           fmt::format("a ring with rule: {} has no faults yet; expected none", enum_name(c.links[*first].stops.rule)));
   for (std::size_t i = 0; i < c.links.size(); ++i) {
     if (has_stops(c.links[i])) check_stop_ring(config, graph, i, breach);
     if (c.links[i].lane || c.links[i].lanes > 1)

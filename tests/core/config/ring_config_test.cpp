@@ -82,6 +82,8 @@ const std::string kManyChannels =
     meeting("", "stops: {rule: slots}", "  link: {virtual_channels: 2}\n") + "    - {from: 'a[0]', to: 'b[0]'}\n";
 const std::string kMetAnswers =
     "workload: {traffic: {reply_bytes: 64}}\n" + meeting("", "stops: {rule: slots}").substr(kTraffic.size());
+const std::string kFaults = "scene: {builtin: cornell}\nfaults: {links: {drop: 0.1}}\n" +
+                            meeting("", "stops: {rule: slots}").substr(kTraffic.size());
 const std::string kPart = kTraffic +
                           "topology: {shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[0..2]', stops: "
                           "{rule: slots}}]}\n";
@@ -119,6 +121,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "topology.link.virtual_channels: a drawing with a ring of stops has one channel a link yet"},
         BadConfig{"AnswersBetweenRings", kMetAnswers.c_str(),
                   "workload.traffic.reply_bytes: answers are modelled on a ring with stops that is alone"},
+        BadConfig{"FaultsOfTwoRings", kFaults.c_str(), "faults.links: a ring with rule: slots has no faults yet"},
         BadConfig{"NotOnTheRing", kPart.c_str(), "topology.nodes.0: r[3] has no link"},
         BadConfig{"NodeLatency", kLate.c_str(), "topology.nodes.0.latency_cycles: nothing waits at a stop"},
         BadConfig{"TwoStops", kPair.c_str(), "expected three nodes at least, each of them once, found 2 nodes"},
