@@ -280,7 +280,7 @@ void describe(V& v, GraphLink& c) {
           "The number of equal links side by side, one for each lane from `lane` on, or from 0 on.");
   v.choice("queue", c.queue, "The queue that carries the link in the native engine; left out, that of topology.link.");
   v.field("clock", c.clock, "", "The clock of the link, a name of `clocks`; left out, noc.");
-  v.section("stops", c.stops, "The stops of a ring that is the whole network.");
+  v.section("stops", c.stops, "The stops of a ring.");
 }
 
 }  // namespace config
