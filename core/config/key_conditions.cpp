@@ -52,6 +52,7 @@ constexpr Row kRows[] = {
     {"engine.what_if", kCycle},
     {"engine.lanes", kNative},
     {"engine.lanes", kTreelets},
+    {"engine.lanes", kBoxesAlone},
     {"topology.resources", kFreeSize},
     {"topology.rings", kMultiRing},
     {"topology.groups", kGroups},

@@ -224,6 +224,12 @@ inline constexpr Condition kTreelets{[](const C& c, const S&) {
                                               c.bvh.treelets.bytes == 0;
                                      },
                                      "no treelet is a subtree with so many triangles"};
+inline constexpr Condition kBoxesAlone{[](const C& c, const S& s) {
+                                         return c.accuracy.box != BoxLevel::kDouble &&
+                                                c.bvh.elements == BvhConfig::Elements::kBoxes &&
+                                                !is_quantised(c.bvh.storage) && !has_planes(c, s);
+                                       },
+                                       "lists of rays visit only nodes that hold boxes alone, in float"};
 inline constexpr Condition kCutTree{[](const C& c, const S&) { return c.bvh.treelets.bytes > 0; },
                                     "the tree is not cut into treelets"};
 inline constexpr Condition kBlocks{[](const C& c, const S&) { return c.collections.key == CollectionKey::kBlock; },

@@ -145,6 +145,10 @@ TEST_F(IgnoredKeys, AreThoseThatTheUserSets) {
   EXPECT_THAT(ignored(kTerrain, {"scene.sky.color=[1, 0, 0]", "testers={any_hit_unit: 50, box: {units: 2}}"}),
               ElementsAre("testers.any_hit_unit"));
   EXPECT_THAT(ignored(kLayers, {"testers.any_hit_unit=50"}), IsEmpty());
+  const std::string lists = "engine.lanes=rays", treelets = "collections.traversal=treelet";
+  EXPECT_THAT(ignored(kNative, {lists, treelets}), IsEmpty());
+  for (const char* other : {"accuracy.box=double", "bvh.storage=quantised", "bvh.elements=spheres"})
+    EXPECT_THAT(ignored(kNative, {lists, treelets, other}), ElementsAre("engine.lanes")) << other;
 }
 
 TEST_F(IgnoredKeys, OfAResolvedConfigurationAreNotItsDefaults) {
