@@ -140,6 +140,8 @@ inline constexpr Condition kGaussianCloud{
     [](const C& c, const S&) { return is_generated(c, BuiltinScene::kGaussians); },
     "the scene is not the generated one of Gaussians"};
 inline constexpr Condition kGaussians{[](const C&, const S& s) { return s.gaussians; }, "the scene has no Gaussians"};
+inline constexpr Condition kSurfaces{[](const C&, const S& s) { return !s.gaussians; },
+                                     "Gaussians send no rays of their own and have no textures"};
 inline constexpr Condition kInstances{[](const C& c, const S&) { return is_generated(c, BuiltinScene::kInstances); },
                                       "the scene is not the generated one of instances"};
 inline constexpr Condition kOwnCamera{[](const C& c, const S&) { return c.camera.eye.has_value(); },
