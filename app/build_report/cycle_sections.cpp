@@ -177,8 +177,10 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   r.memory = memory(c, config.memory);
   r.parts = c.parts;
   r.bytes = c.bytes;
-  r.shading.products = c.shading.products;
-  r.shading.lookups = c.shading.lookups;
+  if (!config.shading.program.any()) {  // whose instructions are these
+    r.shading.products = c.shading.products;
+    r.shading.lookups = c.shading.lookups;
+  }
   if (const ShadeVectorCounts& of = c.shading.vectors; config.shading.lanes > 1)
     r.shading.vectors = {of, ratio(of.rays, of.runs * static_cast<std::uint64_t>(config.shading.lanes)),
                          ratio(of.runs, of.vectors)};

@@ -178,10 +178,11 @@ void describe(V& v, const Shading& r) {
   v.field("shaded", r.shaded, "rays", "completed rays shaded");
   v.field("saturated", r.saturated, "values", "radiance values beyond the range of fixed point");
   v.field("utilisation", r.utilisation, "fraction",
-          "fraction of the workers' cycles spent on shading and on making camera rays");
+          "fraction of the workers' cycles spent on shading and on making camera rays; with programs, those in which "
+          "they held any rays");
   v.field("products", r.products, "products",
-          "products of the surfaces' effects, beyond those of plain surfaces (cycle)");
-  v.field("lookups", r.lookups, "lookups", "filtered texture lookups at surfaces (cycle)");
+          "products of the surfaces' effects, beyond those of plain surfaces, without shading.program (cycle)");
+  v.field("lookups", r.lookups, "lookups", "filtered texture lookups at surfaces, without shading.program (cycle)");
   v.section("vectors", r.vectors, "vectors of the workers, with shading.lanes (cycle)");
   v.section("programs", r.programs, "the programs of the workers, with shading.program (cycle)");
   v.section("effects", r.effects, "every effect of light");

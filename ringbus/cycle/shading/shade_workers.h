@@ -66,8 +66,9 @@ class ShadeWorkers {
   /// Rays that wait for a worker.
   std::size_t waiting() const { return queues_.size() + (sorter_ ? sorter_->size() : 0); }
   std::size_t working() const { return cores_ ? cores_->working() : jobs_.size() - idle_.size(); }
-  /// Worker-cycles spent on jobs that are done: shading, camera rays and any-hit calls.
-  Cycle busy() const { return cores_ ? cores_->busy() : busy_; }
+  /// Worker-cycles in which a worker could do nothing else. They are those of jobs that are done: shading, camera rays
+  /// and any-hit calls. With programs, which share a worker, they are those in which it issued, and of any-hit calls.
+  Cycle busy() const { return cores_ ? cores_->issuing() : busy_; }
   /// The work of all rays that began to be shaded.
   ShadingCounts counts() const {
     ShadingCounts out = costs_.counts();

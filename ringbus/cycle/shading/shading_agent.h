@@ -60,7 +60,7 @@ class ShadingAgent final : public Agent {
   std::uint64_t completed() const { return open_.completed(); }
   /// The last cycle in which it did anything.
   Cycle last_event() const { return now_; }
-  /// Worker-cycles spent on jobs that are done.
+  /// Worker-cycles in which a worker could do nothing else, as ShadeWorkers has them.
   Cycle busy() const { return workers_.busy(); }
   /// The work of all rays that began to be shaded.
   ShadingCounts counts() const { return workers_.counts(); }

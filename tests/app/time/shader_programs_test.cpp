@@ -12,6 +12,12 @@ namespace {
 class ShaderPrograms : public TimedRun {
  protected:
   static std::uint64_t cycles(const Json& r) { return r["engine"]["cycles"].get<std::uint64_t>(); }
+  /// Rays per kilocycle that the workers would allow.
+  static double bound(const Json& r) {
+    for (const Json& of : r["bound"]["classes"])
+      if (of["name"] == "shading") return of["rays_per_kilocycle"];
+    return 0;
+  }
 };
 
 std::string machine(const std::string& shading, const std::string& program = "") {
@@ -67,6 +73,10 @@ TEST_F(ShaderPrograms, TotalsClose) {
     const Json& data = r["memory"]["ray_data"];
     EXPECT_GT(data["materials_read"], 0);
     EXPECT_GT(data["vertices_read"], 0);
+    if (r["shading"].contains("vectors")) {
+      EXPECT_EQ(r["shading"]["vectors"]["rays"], r["shading"]["shaded"]);
+    }
+    EXPECT_FALSE(r["shading"].contains("products")) << "they are instructions";
     EXPECT_GE(1, of("occupancy"));
     EXPECT_GE(1, of("lane_fill"));
     EXPECT_EQ(r["digest"], report(machine("cycles_per_shade: 7"), {"scene={builtin: cornell}"})["digest"]);
@@ -90,6 +100,10 @@ TEST_F(ShaderPrograms, RegistersLimitTheRaysThatAreHeld) {
   const double rays = one["rays"]["completed"].get<double>() + one["rays"]["by_kind"]["camera"].get<double>();
   EXPECT_NEAR(one["shading"]["utilisation"].get<double>() * static_cast<double>(cycles(one)), rays * 69,
               1e-6 * rays * 69);
+  // Waits leave the worker to other vectors, if it holds any: its bound is six instructions a ray, however many it
+  // holds.
+  for (const Json& r : {one, four})
+    EXPECT_NEAR(bound(r), 1000 * one["rays"]["completed"].get<double>() / (6 * rays), 1e-6 * bound(r));
 }
 
 // Each kind of work has its own program.

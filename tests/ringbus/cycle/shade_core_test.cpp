@@ -191,6 +191,7 @@ TEST(ShadeCore, OtherJobsHoldTheWorkerUp) {
   worker.begin(0, {ray({})}, 7);
   EXPECT_EQ(worker.run(1), Ends{27});
   EXPECT_EQ(worker.core().counts().issue_stalls, 18u);
+  EXPECT_EQ(worker.core().issuing(), 10u + 10 + 2);
 }
 
 TEST(ShadeCore, ReadsAreWaitedForWhereTheyAreUsed) {
@@ -230,9 +231,11 @@ TEST(ShadeCore, ProgramsOfAVectorTakeTurns) {
   worker.begin(0, {ray({}, 1), ray({}, 0), ray({}, 1)}, 0);
   EXPECT_EQ(worker.run(1), Ends{3 + 2});
   EXPECT_EQ(worker.core().vectors().runs, 2u);
+  EXPECT_EQ(worker.core().vectors().rays, 3u);
   Worker camera(compiled({two}), 1, 2);  // five rays for two lanes
-  camera.begin(0, std::vector<ShadeCore::Ray>(5), 0);
+  camera.begin(0, std::vector<ShadeCore::Ray>(5, ShadeCore::Ray{kCameraKind}), 0);
   EXPECT_EQ(camera.run(1), Ends{6});
+  EXPECT_EQ(camera.core().vectors().vectors, 0u) << "camera rays are not completed rays";
 }
 
 }  // namespace

@@ -44,9 +44,11 @@ void ShadeCore::begin(std::size_t at, std::vector<Ray>&& rays, Cycle now) {
     }
     v.runs[run - 1].push_back(i);
   }
-  ++vector_counts_.vectors;
-  vector_counts_.rays += v.rays.size();
-  vector_counts_.runs += v.runs.size();
+  if (v.rays.front().kind != kCameraKind) {
+    ++vector_counts_.vectors;
+    vector_counts_.rays += v.rays.size();
+    vector_counts_.runs += v.runs.size();
+  }
   v.run = 0;
   v.began = v.counted = now;
   begin_run(v, now);
@@ -67,6 +69,7 @@ void ShadeCore::begin_run(Vector& v, Cycle now) {
 
 Cycle ShadeCore::occupy(Cycle cycles, Cycle now) {
   issue_free_ = std::max(issue_free_, now) + cycles;
+  occupied_ += cycles;
   find_next();
   return issue_free_;
 }

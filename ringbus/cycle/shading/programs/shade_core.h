@@ -46,7 +46,10 @@ class ShadeCore {
   Cycle next() const { return next_; }
 
   const ShadeProgramCounts& counts() const { return counts_; }
+  /// Of completed rays.
   const ShadeVectorCounts& vectors() const { return vector_counts_; }
+  /// Cycles in which the worker issued an instruction, or did something else.
+  Cycle issuing() const { return counts_.issued + occupied_; }
   std::uint64_t instruction_misses() const { return cache_.misses(); }
   std::uint64_t instruction_bytes() const { return cache_.bytes(); }
 
@@ -88,6 +91,7 @@ class ShadeCore {
   std::size_t lanes_;
   std::vector<Vector> vectors_;
   Cycle issue_free_ = 0;  // the first cycle in which nothing has been issued
+  Cycle occupied_ = 0;    // by what is no vector
   Cycle next_ = kNever;
   ShadeProgramCounts counts_;
   ShadeVectorCounts vector_counts_;

@@ -69,8 +69,12 @@ class ShadeCores {
     return static_cast<std::size_t>(
         std::count_if(held_.begin(), held_.end(), [](const Held& held) { return held.places > 0; }));
   }
-  /// Worker-cycles in which a worker held anything, of times that are over.
-  Cycle busy() const { return busy_; }
+  /// Worker-cycles in which no other work could be issued.
+  Cycle issuing() const {
+    Cycle sum = 0;
+    for (const ShadeCore& core : cores_) sum += core.issuing();
+    return sum;
+  }
   void add_to(ShadingCounts& counts) const {
     for (const ShadeCore& core : cores_) {
       counts.programs += core.counts();
@@ -103,7 +107,7 @@ class ShadeCores {
   std::vector<Held> held_;  // by worker
   ProgramMemory* memory_ = nullptr;
   std::vector<std::size_t> ended_;  // scratch
-  Cycle busy_ = 0;
+  Cycle busy_ = 0;                  // worker-cycles in which a worker held anything, of times that are over
 };
 
 }  // namespace carousel::ringbus::cycle
