@@ -149,9 +149,9 @@ class Compiler {
     ++steps_;
     one(*row, words);
     if (steps_ > kMostSteps)
-      fail(0, fmt::format("a test may then take {} instructions; expected smaller bounds of loops, so that it takes {} "
+      fail(0, fmt::format("a {} may then take {} instructions; expected smaller bounds of loops, so that it takes {} "
                           "at most",
-                          steps_, kMostSteps));
+                          use_.shades ? "ray" : "test", steps_, kMostSteps));
   }
 
   [[noreturn]] void unknown(const Word& word) {

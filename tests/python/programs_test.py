@@ -394,6 +394,8 @@ class Messages(unittest.TestCase):
                       self.shader_refused(plain, "program: own, lanes: 4, registers: 39"))
         self.assertIn("built_in is no name for a program of your own",
                       self.shader_refused(plain, "workers: 1", "built_in"))
+        self.assertIn("expected a name of letters, digits and _, found 'a.b'",
+                      self.shader_refused(plain, "program: built_in", "a.b"))
         self.assertIn("expected false with shading.program, found true",
                       self.shader_refused(plain, "program: own, idle_resources_shade: true"))
         self.assertIn("expected a multiple of line_bytes, which are 64, found 100",

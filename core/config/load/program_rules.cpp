@@ -44,13 +44,18 @@ class ProgramRules {
     issues_.push_back({positions_.find(key), key, std::move(message)});
   }
 
-  void primitive_is_whole(const std::string& name, const PrimitiveConfig& primitive) {
-    const std::string key = "primitives." + name;
+  bool name_is_plain(const std::string& key, const std::string& name) {
     const auto plain = [](char c) {
       return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_' || (c >= '0' && c <= '9');
     };
-    if (!std::all_of(name.begin(), name.end(), plain))
-      return issue(key, fmt::format("expected a name of letters, digits and _, found '{}'", name));
+    if (std::all_of(name.begin(), name.end(), plain)) return true;
+    issue(key, fmt::format("expected a name of letters, digits and _, found '{}'", name));
+    return false;
+  }
+
+  void primitive_is_whole(const std::string& name, const PrimitiveConfig& primitive) {
+    const std::string key = "primitives." + name;
+    if (!name_is_plain(key, name)) return;
     for (int axis = 0; axis < 3; ++axis)
       if (!(primitive.bounds.low[axis] < primitive.bounds.high[axis]))
         return issue(key + ".bounds",
@@ -81,6 +86,7 @@ class ProgramRules {
   void shaders_are_whole() {
     for (const auto& [name, shader] : c_.programs.shaders.named) {
       const std::string key = "programs.shaders." + name;
+      if (!name_is_plain(key, name)) continue;
       ProgramFault fault;
       if (name == ShaderProgramsConfig::kBuiltIn || name == ShaderProgramsConfig::kConstant)
         issue(key, fmt::format("{} is no name for a program of your own; expected another", name));
