@@ -170,7 +170,7 @@ inline constexpr auto kCostTable = [] {
        kE,
        "simple_instruction",
        "pJ",
-       "A sum, comparison or move of a program of a primitive, with its fetch and its registers.",
+       "A sum, comparison or move of a program, with its fetch and its registers.",
        {5.9f, kAssumed,
         "a sum (Horowitz, ISSCC 2014), and five accesses to registers and store of 1 pJ, for which no source was "
         "found"},

@@ -149,6 +149,10 @@ TEST_F(IgnoredKeys, AreThoseThatTheUserSets) {
   EXPECT_THAT(ignored(kNative, {lists, treelets}), IsEmpty());
   for (const char* other : {"accuracy.box=double", "bvh.storage=quantised", "bvh.elements=spheres"})
     EXPECT_THAT(ignored(kNative, {lists, treelets, other}), ElementsAre("engine.lanes")) << other;
+  std::vector<std::string> prices{"energy.profile=n45", "energy.simple_instruction=3", "energy.shade=3"};
+  EXPECT_THAT(ignored(kTerrain, prices), ElementsAre("energy.simple_instruction"));
+  prices.emplace_back("shading.program=built_in");
+  EXPECT_THAT(ignored(kTerrain, prices), ElementsAre("energy.shade"));
 }
 
 TEST_F(IgnoredKeys, OfAResolvedConfigurationAreNotItsDefaults) {
