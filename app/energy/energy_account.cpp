@@ -8,6 +8,8 @@
 #include "app/area/machine_area.h"
 #include "core/config/costs.h"
 #include "core/config/own_sections.h"
+#include "core/config/shader_programs.h"
+#include "core/program/program.h"
 #include "ringbus/topology/wire_length.h"
 
 namespace carousel::app {
@@ -55,7 +57,8 @@ EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<B
       collections_kib_(kIdBytes * mean(config, [](const OwnSections& one) { return one.collections.capacity; }) / 1024),
       buffer_kib_(mean(config, [](const OwnSections& one) { return one.memory.shape_buffer_kib; })),
       l1_kib_(mean(config, [](const OwnSections& one) { return one.memory.l1_kib; })),
-      l2_kib_(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks)) {}
+      l2_kib_(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks)),
+      programs_kib_(static_cast<double>(shade_programs(config.shading, config.programs).store_bytes) / 1024) {}
 
 /// Adds up the energy of some events.
 class EnergyAccount::Sum {
@@ -130,7 +133,8 @@ class EnergyAccount::Sum {
     add(counts.branch_instructions, Cost::kBranchInstruction);
   }
 
-  /// In place of a constant for a ray that is shaded. To read is to issue: the caches are charged for the lines.
+  /// In place of a constant for a ray that is shaded. To read is to issue: the caches are charged for the lines,
+  /// and the store of programs for those that an instruction cache did not have.
   void shader_instructions(const ShadeProgramCounts& counts) {
     const auto add = [&](EnergyPart part, std::uint64_t executed, Cost each) {
       parts_[part].add(static_cast<double>(executed), pj(each));
@@ -140,6 +144,7 @@ class EnergyAccount::Sum {
     add(EnergyPart::kShades, counts.divide, Cost::kDivideInstruction);
     add(EnergyPart::kShades, counts.branch, Cost::kBranchInstruction);
     add(EnergyPart::kLookups, counts.texture, Cost::kLookup);
+    access(EnergyPart::kShades, static_cast<double>(counts.instruction_bytes), a_.programs_kib_);
   }
 
   void caches() {

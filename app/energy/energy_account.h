@@ -34,6 +34,7 @@ class EnergyAccount {
   std::vector<ByteRow> rows_;
   std::vector<double> wire_mm_;  // by link
   double rays_kib_, collections_kib_, buffer_kib_, l1_kib_, l2_kib_;
+  double programs_kib_;  // the store behind the instruction caches of shader workers
 };
 
 /// What its report says of the events of a whole run.

@@ -1,4 +1,6 @@
 // Whole machines whose shader workers run programs.
+#include <cmath>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -67,7 +69,13 @@ TEST_F(ShaderPrograms, TotalsClose) {
     EXPECT_EQ(of("vector_cycles"), of("issued") + of("operand_stalls") + of("branch_stalls") + of("trace_stalls") +
                                        of("memory_stalls") + of("instruction_stalls") + of("issue_stalls"));
     const double simple = of("simple") + of("read") + of("trace");
-    const double expected = 1e-12 * (5.9 * (simple + of("branch")) + 9.6 * of("product") + 23.4 * of("divide"));
+    // A word of 8 bytes from the store behind an instruction cache: 20 pJ with 32 KiB, 100 with 1024, a line in a
+    // logarithmic plot between.
+    const double word = 20 * std::pow(5, std::log(of("store_bytes") / 1024 / 32) / std::log(32));
+    EXPECT_GT(of("store_bytes"), 32 * 1024);
+    EXPECT_EQ(of("instruction_bytes") > 0, std::string_view(more).starts_with("instruction_cache"));
+    const double expected = 1e-12 * (5.9 * (simple + of("branch")) + 9.6 * of("product") + 23.4 * of("divide") +
+                                     word * of("instruction_bytes") / 8);
     EXPECT_NEAR(r["energy"]["parts"]["shades"]["joules"].get<double>() / expected, 1, 1e-5);
     EXPECT_GT(of("memory_stalls"), 0);
     const Json& data = r["memory"]["ray_data"];
