@@ -58,7 +58,9 @@ EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<B
       buffer_kib_(mean(config, [](const OwnSections& one) { return one.memory.shape_buffer_kib; })),
       l1_kib_(mean(config, [](const OwnSections& one) { return one.memory.l1_kib; })),
       l2_kib_(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks)),
-      programs_kib_(static_cast<double>(shade_programs(config.shading, config.programs).store_bytes) / 1024) {}
+      programs_kib_(config.shading.program.any()
+                        ? static_cast<double>(shade_programs(config.shading, config.programs).store_bytes) / 1024
+                        : 0) {}
 
 /// Adds up the energy of some events.
 class EnergyAccount::Sum {
