@@ -15,13 +15,13 @@
 namespace carousel::ringbus {
 namespace {
 
-struct Row {
+struct LanesCase {
   std::string scene;      // keys of the section
   bool non_opaque;        // rays with flags, and primitives that let some of them pass
   std::string structure;  // keys of the section `bvh`
 };
 
-const std::vector<Row> kRows{
+const std::vector<LanesCase> kLanesCases{
     {"builtin: cornell", false, "width: 2, leaf_triangles: 1"},
     {"builtin: terrain", false, "width: 8, leaf_triangles: 4"},
     {"builtin: instances", true, "width: 4, leaf_triangles: 1"},
@@ -30,7 +30,7 @@ const std::vector<Row> kRows{
     {"builtin: spheres", true, "width: 8, leaf_triangles: 16, mixed_triangles: 2"},
 };
 
-Cell cell_of(const Row& row, const AccuracyConfig& accuracy, const char* lanes, int rays) {
+Cell cell_of(const LanesCase& row, const AccuracyConfig& accuracy, const char* lanes, int rays) {
   const std::string text = fmt::format(
       "scene: {{{}}}\n"
       "engine: {{kind: native, lanes: {}}}\n"
@@ -50,8 +50,8 @@ Cell cell_of(const Row& row, const AccuracyConfig& accuracy, const char* lanes, 
 // that are split once (8, 9) and more often.
 TEST(RayLists, EqualTheDepthFirstTracerWithListsOfAnyLength) {
   Scenes scenes;
-  std::vector<std::pair<Row, AccuracyConfig>> cases;
-  for (const Row& row : kRows)
+  std::vector<std::pair<LanesCase, AccuracyConfig>> cases;
+  for (const LanesCase& row : kLanesCases)
     for (const AccuracyConfig& accuracy : accel::triangle_and_box_levels()) cases.emplace_back(row, accuracy);
   for (const auto& [row, accuracy] : some(cases, 24))
     for (const int rays : {1, 7, 8, 9, 100})
@@ -66,7 +66,7 @@ TEST(RayLists, EqualTheDepthFirstTracerWithListsOfAnyLength) {
 TEST(RayLists, ChangeTheOrderOfTests) {
   Scenes scenes;
   const auto boxes = [&](const char* lanes, int rays) {
-    const Cell cell = cell_of(kRows[1], {}, lanes, rays);
+    const Cell cell = cell_of(kLanesCases[1], {}, lanes, rays);
     const Outcome out = run_cell(scenes.of(cell), cell);
     EXPECT_EQ(out.fault, "") << cell.text();
     return out.sum.tests.box;
