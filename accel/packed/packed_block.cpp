@@ -137,7 +137,7 @@ std::int64_t from_last(std::span<const PackedTriangle> triangles, std::size_t i)
   return std::int64_t{triangles[i].primitive & kPrimitiveMask} - (triangles[i - 1].primitive & kPrimitiveMask);
 }
 
-/// Those with which all numbers have the fewest bits.
+/// The widths with which the numbers of all triangles take the fewest bits.
 PrimitiveWidths widths_of(std::span<const PackedTriangle> triangles, unsigned offset) {
   PrimitiveWidths best{offset, 0};
   std::size_t fewest = triangles.size() * offset;

@@ -28,7 +28,7 @@ inline constexpr std::uint32_t kStreamRoom = 16'384;  ///< places in lists
 inline constexpr std::uint32_t kFewRays = 8;          ///< a shorter list is not split
 inline constexpr std::uint32_t kLaterRays = 32;       ///< rays of short lists that wait for one another
 
-/// What the box tests need of a ray, in one cache line.
+/// The part of a ray that its box tests read, in one cache line.
 struct alignas(64) StreamRay {
   float origin[3], near[3], far[3];
   float tmin;

@@ -6,8 +6,8 @@
 
 namespace carousel {
 
-/// What an instruction that writes a register computes of its operands, rounded once; 0 for data that has been read,
-/// whose values no program sees.
+/// The value that an instruction writes to its register, rounded once. Data that was read is 0: no program sees its
+/// values.
 inline float value_of(const Instruction& i, float a, float b, float c) {
   switch (i.op) {
     case Op::kLoad:

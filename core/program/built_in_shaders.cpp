@@ -49,7 +49,7 @@ class Text {
     line("load eight, 8");
     for (int i = 0; i < kAtOnce * kVectors; ++i) line(fmt::format("mov v{}, one", i));
   }
-  /// What effects take beyond a plain surface, eight products and sums a round.
+  /// The products and sums that effects need beyond a plain surface, eight a round.
   void effects() {
     line("mov left, products");
     line("loop 900");
@@ -112,7 +112,7 @@ std::vector<std::string> built_in_shader(std::size_t kind) {
     out.textures();
     out.effects();
   } else if (name == "shadow") {
-    // What a shadow ray meets takes away its light, unless that is a pane.
+    // A shadow ray loses its light at what it meets, unless that is a pane.
     out.fill();
     out.line("if hit");
     out.effects();

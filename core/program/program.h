@@ -69,7 +69,7 @@ inline constexpr std::uint32_t kInstructionBytes = 8;   ///< of an instruction i
 /// The registers that hold the ray when a program begins. They are only read.
 inline constexpr std::array<std::string_view, 8> kProgramInputs{"ox", "oy", "oz", "dx", "dy", "dz", "tmin", "tmax"};
 
-/// What a program is for: the registers that it finds filled, and which instructions it may have.
+/// The purpose of a program: the registers that it finds filled, and the instructions that it may have.
 struct ProgramUse {
   std::span<const std::string_view> inputs;
   bool shades;  ///< of a shader worker; otherwise it finds the hits of a primitive

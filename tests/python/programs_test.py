@@ -310,16 +310,19 @@ class Machines(unittest.TestCase):
 
 
 class Messages(unittest.TestCase):
-    def refused(self, program, primitive="", objects="[{primitive: own}]", more=""):
+    def refused_file(self, text):
         folder = Folder()
-        lines = "".join(f"      - {line}\n" for line in program)
-        (folder.path / "own.yaml").write_text(
-            f"scene: {{builtin: cornell, objects: {objects}}}\nprimitives:\n  own:\n{primitive}    program:\n{lines}"
-            f"{more}")
+        (folder.path / "own.yaml").write_text(text)
         outcome = folder.run(None, "own.yaml")
         self.assertEqual(outcome.returncode, 2, outcome.stderr)
         self.assertFalse((folder.path / "out").exists())
         return outcome.stderr
+
+    def refused(self, program, primitive="", objects="[{primitive: own}]", more=""):
+        lines = "".join(f"      - {line}\n" for line in program)
+        return self.refused_file(
+            f"scene: {{builtin: cornell, objects: {objects}}}\nprimitives:\n  own:\n{primitive}    program:\n{lines}"
+            f"{more}")
 
     def test_a_fault_of_a_program_stands_at_its_word(self):
         hit = "hit tmin, dx, dy, dz"
@@ -358,15 +361,10 @@ class Messages(unittest.TestCase):
         self.assertIn("lanes in step", self.refused(hit, more=cycle + "testers: {simd: {lanes: 4}}\n"))
 
     def shader_refused(self, program, shading="program: own", name="own"):
-        folder = Folder()
         lines = "".join(f"        - {line}\n" for line in program)
-        (folder.path / "own.yaml").write_text(
+        return self.refused_file(
             f"scene: {{builtin: cornell}}\nengine: {{kind: cycle}}\nshading: {{{shading}}}\n"
             f"programs:\n  shaders:\n    {name}:\n      program:\n{lines}")
-        outcome = folder.run(None, "own.yaml")
-        self.assertEqual(outcome.returncode, 2, outcome.stderr)
-        self.assertFalse((folder.path / "out").exists())
-        return outcome.stderr
 
     def test_a_fault_of_a_shader_stands_at_its_word(self):
         for program, position, message in (

@@ -30,7 +30,7 @@ struct ShaderProgramsConfig {
   const std::string& of(std::size_t kind) const { return of_kind[kind].empty() ? standard : of_kind[kind]; }
 };
 
-/// What a shader worker fetches the instructions of programs through.
+/// The cache through which a shader worker fetches the instructions of programs.
 struct InstructionCacheConfig {
   std::int64_t bytes = 0, line_bytes = 64, miss_cycles = 40;
 };

@@ -51,7 +51,7 @@ void check_node(const GraphNode& node, const std::string& key, const RuleBreach&
     breach(key + ".at", "the nodes of a group cannot all stand there; expected step besides");
 }
 
-/// What a resource has of its own must be there: collections at a packet process that serves, all else at resources.
+/// Refuses own keys of a node without that part: a packet process that serves has collections, resources all else.
 void check_own_of(const Config& config, const OwnOf& one, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
   bool is_process = false;
