@@ -50,8 +50,8 @@ std::string first_steps() {
   }
   return out +
          "\ncarousel COMMAND --help describes the options of a command and shows examples.\n"
-         "The tutorial is docs/guides/tutorial.md; every key stands in docs/reference/config.md, every number of\n"
-         "a report in docs/reference/report.md. An installation has docs in share/doc/carousel and configs in "
+         "The tutorial is docs/guides/tutorial.md; every key stands in docs/reference/config, every number of\n"
+         "a report in docs/reference/report. An installation has docs in share/doc/carousel and configs in "
          "share/carousel.";
 }
 

@@ -46,7 +46,7 @@ inline constexpr auto kEnumNames<Verify> = [] {
   return names<Verify>({{kNone, "none"}, {kReference, "reference"}, {kEffects, "effects"}});
 }();
 
-/// The configuration tree (docs/reference/config.md, a contract): plain structs, filled once and then only read. A part
+/// The configuration tree (docs/reference/config, a contract): plain structs, filled once and then only read. A part
 /// that needs one section includes only the file of that section.
 struct Config {
   std::int64_t schema_version = 1;

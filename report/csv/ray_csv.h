@@ -22,7 +22,7 @@ struct HitRow {
 /// Sorts by pixel, sample, bounce, kind and index within the kind: an order that no engine can change.
 void sort_rows(std::vector<HitRow>& rows);
 
-/// One row a ray, in the order given; `ray` is the row's number. Columns of docs/reference/report.md, world space,
+/// One row a ray, in the order given; `ray` is the row's number. Columns of docs/reference/report, world space,
 /// floats with the fewest digits that read back to the same bits. A miss has t = inf and no instance,
 /// primitive, u and v; of a shadow ray only `hit` is known. If a ray has flags (ray_csv_columns.h) there is a last
 /// column of them. The hits of a run that was interrupted (not `complete`) end in a line that says so

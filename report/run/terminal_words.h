@@ -5,7 +5,7 @@
 
 namespace carousel::report {
 
-/// One item of a table on the terminal, with its explanation for docs/reference/report.md.
+/// One item of a table on the terminal, with its explanation for docs/reference/report.
 struct TerminalWord {
   bool traffic = false;  ///< in the table of synthetic traffic; otherwise in that of a run of rays
   std::string line;      ///< name at the left of the line

@@ -1,5 +1,5 @@
-"""The documentation: script/docs finds what is planted, its pages have no fault, and the page of the commands is
-what the program prints. CAROUSEL names the program."""
+"""The documentation: script/docs finds what is planted, its pages have no fault, and those of the
+reference are what the program writes. CAROUSEL names the program."""
 
 import os
 import shutil
@@ -7,9 +7,21 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
 
 SOURCE = Path(__file__).resolve().parents[2]
+CAROUSEL = str(Path(os.environ["CAROUSEL"]).resolve())
+sys.path.insert(0, str(SOURCE / "web/docs"))
+sys.dont_write_bytecode = True
+import command_examples  # noqa: E402
+import command_pages  # noqa: E402
+import config_pages  # noqa: E402
+import key_examples  # noqa: E402
+import reference_pages  # noqa: E402
+import report_examples  # noqa: E402
+import report_pages  # noqa: E402
+
 GONE = "docs/"   # apart from the names of pages that are not there: script/docs looks at this file, too
 NAV = "nav:\n  - index.md\n  - glossary.md\n"
 PAGES = {
@@ -72,14 +84,64 @@ class Check(unittest.TestCase):
         self.assertIn("a list needs an empty line", self.faults(docs__index_md=PAGES["docs/index.md"] + "Text:\n- a\n"))
 
 
-class Pages(unittest.TestCase):
-    def test_have_no_fault(self):
-        self.assertEqual(docs("--check").stderr, "")
+class Reference(unittest.TestCase):
+    """What has no example is named, with the table that lacks it."""
 
-    def test_that_of_the_commands_is_what_they_print(self):
-        page = docs("--commands", os.environ["CAROUSEL"], "--print").stdout
-        self.assertTrue(page == (SOURCE / "docs/reference/commands.md").read_text(),
-                        "script/docs --commands build/work/carousel")
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory(prefix="carousel_docs_")
+        self.addCleanup(self.folder.cleanup)
+
+    def test_a_key_that_needs_other_keys(self):
+        schema = {"type": "integer", "minimum": 0, "maximum": 64, "default": 0}
+        reached = config_pages.key_example(CAROUSEL, "memory.strip_ahead", schema, self.folder.name)
+        self.assertIn("strip_ahead: 4", reached[0])
+        self.assertIn("strip_end: flag", reached[0])
+        with unittest.mock.patch.dict(key_examples.KEYS):
+            del key_examples.KEYS["memory.strip_ahead"]
+            example, why = config_pages.key_example(CAROUSEL, "memory.strip_ahead", schema, self.folder.name)
+        self.assertIsNone(example)
+        self.assertIn("memory.strip_ahead: the machine cannot feel this key", why)
+
+    def test_a_key_without_a_range(self):
+        example, why = config_pages.key_example(CAROUSEL, "memory.none", {"type": "string"}, self.folder.name)
+        self.assertIsNone(example)
+        self.assertIn("no row sets it", why)
+
+    def test_a_number_that_no_run_has(self):
+        missing = []
+        one = {"few-rays": report_examples.RUNS["few-rays"]}
+        with unittest.mock.patch.object(report_examples, "RUNS", one):
+            pages = report_pages.report_pages(CAROUSEL, self.folder.name, SOURCE, missing)
+        text = "web/docs/report_examples.py: RUNS lacks a run that has {}, or NONE a reason why no run has it"
+        self.assertTrue(text.format("faults") in missing and text.format("memory.dram") in missing, missing[:5])
+        self.assertFalse(any("rays.emitted" in line or "faults." in line for line in missing), missing[:5])
+        self.assertRegex(pages["report/rays.md"], r"\| `rays\.lost` \| rays \|.* \| `0` \| \[few-rays\]")
+
+    def test_an_option_without_a_line_and_a_line_that_fails(self):
+        self.assertIsNone(command_pages.option_example("run", "--nothing FILE"))
+        self.assertIn("--trace small", command_pages.option_example("run", "--trace FILE"))
+        with unittest.mock.patch.object(command_examples, "LINES", {"check": ["carousel check small.yaml", "carousel check gone.yaml"]}):
+            broken = list(command_pages.broken_commands(CAROUSEL))
+        self.assertEqual(len(broken), 1)
+        self.assertIn("carousel check gone.yaml: ended with status 2", broken[0])
+
+    def test_numbers_that_vary_stay_as_they_are(self):
+        self.assertEqual([report_pages.kind_of(text) for text in ("`0.25`", "`1e-05`", '`"a"`', "`true`", "3 rows")],
+                         ["number", "number", "text", "true", "rows"])
+
+    def test_a_page_that_is_old_and_one_that_is_gone(self):
+        root = Path(self.folder.name)
+        for name in ("a", "b"):
+            (root / "docs/reference/config").mkdir(parents=True, exist_ok=True)
+            (root / f"{GONE}reference/config/{name}.md").write_text("old")
+        with unittest.mock.patch.object(reference_pages, "all_pages", lambda *_: ({f"{GONE}reference/config/a.md": "new"}, [])):
+            found = reference_pages.differences(CAROUSEL, root)
+        self.assertEqual([line.split(":")[0] for line in found], [f"{GONE}reference/config/{name}.md" for name in ("a", "b")])
+
+
+class Pages(unittest.TestCase):
+    def test_have_no_fault_and_are_what_the_program_writes(self):
+        self.assertEqual(docs("--check", CAROUSEL).stderr, "")
 
 
 if __name__ == "__main__":

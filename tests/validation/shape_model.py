@@ -33,7 +33,7 @@ def single(x):
 
 
 def quantised(positions):
-    """By `scene.quantise` in docs/reference/config.md: a grid of 2^BITS steps, each a power of two, along the longest side."""
+    """By `scene.quantise` in docs/reference/config: a grid of 2^BITS steps, each a power of two, along the longest side."""
     longest = max(max(column) - min(column) for column in zip(*positions))
     step = Fraction(2) ** (math.ceil(math.log2(longest)) - BITS)
     nearest = lambda x: math.floor(abs(x) / step + Fraction(1, 2)) * (1 if x >= 0 else -1)  # halves away from zero

@@ -1,4 +1,4 @@
-// The tables of real runs, item by item: each is explained in docs/reference/report.md, and none is of the other
+// The tables of real runs, item by item: each is explained in docs/reference/report, and none is of the other
 // engine.
 #include <regex>
 #include <set>

@@ -1,6 +1,5 @@
 #include "report/run/report_page.h"
 
-#include <fstream>
 #include <sstream>
 #include <string>
 
@@ -11,12 +10,6 @@
 
 namespace carousel::report {
 namespace {
-
-TEST(ReportPage, IsWrittenByTheProgram) {
-  std::ifstream file(CAROUSEL_SOURCE_DIR "/docs/reference/report.md");
-  const std::string page{std::istreambuf_iterator<char>(file), {}};
-  EXPECT_TRUE(page == report_markdown()) << "carousel schema report --markdown >docs/reference/report.md";
-}
 
 // The page begins with the numbers to look at first, each of which it explains further down.
 TEST(ReportPage, ExplainsTheTenNumbersThatItBeginsWith) {
