@@ -1,10 +1,11 @@
 """Maps of ratios over two axes as SVG: blue cells are above one, orange ones below, each with its number."""
+from chart_drawing import STYLE, text as lettered
 
 
 def colour(ratio):
     """White at 1; the strongest colour from a factor of 2 on."""
     share = min(abs(ratio - 1 if ratio > 1 else 1 / ratio - 1), 1.0)
-    full = (31, 119, 180) if ratio > 1 else (230, 120, 20)
+    full = (0, 114, 178) if ratio > 1 else (230, 159, 0)
     return "#" + "".join(f"{round(255 - share * (255 - part)):02x}" for part in full)
 
 
@@ -14,22 +15,20 @@ def heat_table(title, row_name, rows, column_name, columns, panels):
     width = left + len(panels) * (len(columns) * cell + gap)
     height = top + len(rows) * 40 + 46
     out = [f"<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {width} {height}' width='{width}' height='{height}' "
-           "font-family='sans-serif' font-size='12'>", "<rect width='100%' height='100%' fill='white'/>",
-           f"<text x='8' y='18' font-size='14' font-weight='bold'>{title}</text>",
-           f"<text x='8' y='{top - 8}'>{row_name}</text>"]
+           "font-family='sans-serif' font-size='12'>", f"<title>{title}</title>", STYLE, "<rect class='ground' width='100%' height='100%'/>",
+           lettered(8, 20, title, weight="bold"), lettered(8, top - 8, row_name, "soft")]
     for index, (name, at) in enumerate(panels):
         x0 = left + index * (len(columns) * cell + gap)
-        out += [f"<text x='{x0}' y='{top - 26 + 16 * line}' font-weight='bold'>{text}</text>"
-                for line, text in enumerate(name.split(": "))]
+        out += [lettered(x0, top - 26 + 16 * line, text, weight="bold") for line, text in enumerate(name.split(": "))]
         for i, row in enumerate(rows):
             y = top + i * 40
             if index == 0:
-                out.append(f"<text x='{left - 8}' y='{y + 25}' text-anchor='end'>{row:,}</text>")
+                out.append(lettered(left - 8, y + 25, f"{row:,}", anchor="end"))
             for j, column in enumerate(columns):
                 ratio = at[row, column]
-                out.append(f"<rect x='{x0 + j * cell}' y='{y}' width='{cell - 2}' height='38' fill='{colour(ratio)}' stroke='#999'/>"
-                           f"<text x='{x0 + j * cell + cell / 2 - 1}' y='{y + 24}' text-anchor='middle'>{ratio:.2f}</text>")
+                out.append(f"<rect x='{x0 + j * cell}' y='{y}' width='{cell - 2}' height='38' fill='{colour(ratio)}' stroke='#9aa4b2'/>"
+                           f"<text x='{x0 + j * cell + cell / 2 - 1}' y='{y + 24}' text-anchor='middle' fill='#16202b'>{ratio:.2f}</text>")
         for j, column in enumerate(columns):
-            out.append(f"<text x='{x0 + j * cell + cell / 2}' y='{top + len(rows) * 40 + 16}' text-anchor='middle'>{column}</text>")
-        out.append(f"<text x='{x0}' y='{top + len(rows) * 40 + 34}'>{column_name}</text>")
+            out.append(lettered(x0 + j * cell + cell / 2, top + len(rows) * 40 + 16, str(column), anchor="middle"))
+        out.append(lettered(x0, top + len(rows) * 40 + 34, column_name, "soft"))
     return "\n".join(out + ["</svg>", ""])

@@ -2,6 +2,7 @@
 reference are what the program writes. CAROUSEL names the program."""
 
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -137,6 +138,29 @@ class Reference(unittest.TestCase):
         with unittest.mock.patch.object(reference_pages, "all_pages", lambda *_: ({f"{GONE}reference/config/a.md": "new"}, [])):
             found = reference_pages.differences(CAROUSEL, root)
         self.assertEqual([line.split(":")[0] for line in found], [f"{GONE}reference/config/{name}.md" for name in ("a", "b")])
+
+
+class StudyCharts(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        sys.path.insert(0, str(SOURCE / "bench/studies"))
+        cls.charts = runpy.run_path(str(SOURCE / "bench/studies/charts"))
+
+    def test_read_the_numbers_of_cells(self):
+        number = self.charts["number"]
+        for cell, value in (("1,387", 1387), ("1.01 (0.95 to 1.06)", 1.01), ("-14 %", -14), ("+22 to 24 %", 23), ("139, 140", 139.5),
+                            ("–, 186", 186), ("70.8 → 14.1", 70.8), ("205 (4.2)", 205), ("–, –", None), ("", None)):
+            self.assertEqual(number(cell), value, cell)
+        self.assertEqual(number("15,090 → 11,439", 1), 11439)
+
+    def test_follow_their_tables(self):
+        page = "# Why?\n\n| queue | rate |\n|---|---:|\n| a | 3 |\n| b | 7 (1 %) |\n| c | |\n"
+        chart = {"label": ["queue"], "panels": [("rate", {"": "rate"})]}
+        self.assertEqual(self.charts["data"](chart, page), [("a", [3]), ("b", [7])])
+
+    def test_of_all_studies_are_what_their_tables_give(self):
+        done = subprocess.run([sys.executable, SOURCE / "bench/studies/charts", "--check"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
 
 
 class Pages(unittest.TestCase):
