@@ -140,7 +140,7 @@ class Reference(unittest.TestCase):
         self.assertEqual([line.split(":")[0] for line in found], [f"{GONE}reference/config/{name}.md" for name in ("a", "b")])
 
 
-class StudyCharts(unittest.TestCase):
+class Charts(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         sys.path.insert(0, str(SOURCE / "bench/studies"))
@@ -157,6 +157,12 @@ class StudyCharts(unittest.TestCase):
         page = "# Why?\n\n| queue | rate |\n|---|---:|\n| a | 3 |\n| b | 7 (1 %) |\n| c | |\n"
         chart = {"label": ["queue"], "panels": [("rate", {"": "rate"})]}
         self.assertEqual(self.charts["data"](chart, page), [("a", [3]), ("b", [7])])
+
+    def test_diagrams_are_those_of_their_lists(self):
+        done = subprocess.run([sys.executable, SOURCE / "script/diagrams", "--check"], capture_output=True, text=True, check=False)
+        self.assertEqual((done.returncode, done.stderr), (0, ""))
+        for page in (SOURCE / "docs/how-it-works").glob("*.md"):
+            self.assertRegex(page.read_text(), r"\.svg\)", f"{page.name} has no picture")
 
     def test_of_all_studies_are_what_their_tables_give(self):
         done = subprocess.run([sys.executable, SOURCE / "bench/studies/charts", "--check"], capture_output=True, text=True, check=False)
