@@ -86,15 +86,15 @@ def report_pages(program, folder, root, missing):
         if key.startswith(tuple(report_examples.NONE)):
             return ["none", next(why for name, why in report_examples.NONE.items() if key.startswith(name))]
         for name, report in reports.items():
-            if report is None and kept.get(f"`{key}`", ["", ""])[1].startswith(f"[{name}]"):   # it cannot run here
+            values, before = found_at(report, key), kept.get(f"`{key}`")
+            once = name in report_examples.VARYING_RUNS and before and before[1].startswith(f"[{name}]")
+            if values or once:
                 used.add(name)
-                return kept[f"`{key}`"]
-            values = found_at(report, key)
+            if not values and once:   # this time the run has none, or it cannot run here
+                return before
             if not values:
                 continue
-            used.add(name)
             now = [cell(shown(next((one for one in values if one not in ([], {}, "")), values[0]))), f"[{name}](index.md#{name})"]
-            before = kept.get(f"`{key}`")
             varies = name in report_examples.VARYING_RUNS or any(
                 key == one or key.startswith((one + ".", one + "[")) for one in report_examples.VARY)
             return before if varies and before and before[1] == now[1] and kind_of(before[0]) == kind_of(now[0]) else now
