@@ -49,7 +49,7 @@ def shown(value):
         return "keys below" if value else "`{}`"
     if isinstance(value, list):
         text = json.dumps(value)
-        return f"`{text}`" if len(text) <= 40 else f"{len(value)} rows" if isinstance(value[0], dict) else f"`{text[:36]}`…"
+        return f"`{text}`" if len(text) <= 40 else f"{len(value)} row{'s'[:len(value) != 1]}" if isinstance(value[0], dict) else f"`{text[:36]}`…"
     if isinstance(value, float):
         return f"`{value:.6g}`"
     if isinstance(value, str):
@@ -63,7 +63,7 @@ def kind_of(text):
     """What a cell holds: values that vary are compared by this."""
     text = text.strip("`")
     return "number" if re.fullmatch(r"-?[\d.]+(e[-+]?\d+)?", text) else "text" if text.startswith('"') else "rows" if text.endswith(
-        " rows") or text.startswith("[") else text if text in ("true", "false", "keys below") else "other"
+        (" row", " rows")) or text.startswith("[") else text if text in ("true", "false", "keys below") else "other"
 
 
 def kept_examples(root):
@@ -115,7 +115,9 @@ def report_pages(program, folder, root, missing):
                 linked = key.sub(lambda m: f"| [`{m[1]}`]({m[2]}.md) | " if m[2] in names else m[0], text.rstrip())
                 terminal += ["", f"## {name}", linked]
             else:
-                index += ["", f"## {name}", text.rstrip()]
+                first = re.compile(r"^\| .*? \|", re.M)
+                link = lambda m: f"[{m[0]}]({m[1]}.md)" if m[1] in names else m[0]
+                index += ["", f"## {name}", first.sub(lambda m: re.sub(r"`(\w+)[\w.\[\]]*`", link, m[0]), text.rstrip())]
             continue
         rows = list(table_rows(text))
         page = [f"# {name}", "", "Each example is from the run beside it; [the runs](index.md#the-runs).", "",
