@@ -38,12 +38,18 @@ RayControl::RayControl(const RayControlSettings& settings, std::span<const std::
     else
       managers_.push_back(manager);
   }
-  std::size_t total = free_slots();
-  // What is enough must not be more than the packet process with the fewest slots has, or it would get no rays.
-  for (const ResourceId manager : managers_) total = std::min(total, free_slots(owners_[manager.value]));
-  // Groups are placed whole where possible, but waiting for more than a quarter of the slots would idle the ring.
   if (settings.bundles.size > 0) builder_.emplace(settings.bundles, settings.scene_size);
-  enough_slots_ = std::max<std::size_t>(1, (local_ ? total / resources_issuing() : total) / 4);
+  enough_slots_ = enough_slots();
+}
+
+/// The free slots with which a group is worth starting while all are free. Groups are placed whole where possible, but
+/// waiting for more than a quarter of the slots would idle the ring.
+std::size_t RayControl::enough_slots() const {
+  std::size_t total = free_slots();
+  // It must not be more than the packet process with the fewest slots has, or that one would get no rays.
+  for (const ResourceId manager : managers_)
+    if (const std::size_t own = free_slots(owners_[manager.value]); own > 0) total = std::min(total, own);
+  return std::max<std::size_t>(1, (local_ ? total / resources_issuing() : total) / 4);
 }
 
 void RayControl::free_all() {
@@ -79,10 +85,20 @@ void RayControl::discard() {
   any_waiting_ = false;
 }
 
-void RayControl::exclude(ResourceId resource) {
+std::size_t RayControl::exclude(ResourceId resource) {
   excluded_ = resource;
-  slots_[resource.value].free.clear();
-  slots_[resource.value].count = 0;
+  std::size_t lost = 0;
+  const auto close = [&](ResourceId r) {
+    lost += slots_[r.value].free.size();
+    slots_[r.value].free.clear();
+    slots_[r.value].count = 0;
+  };
+  close(resource);
+  // Nobody else issues packets with the rays of these.
+  if (std::ranges::count(managers_, resource) > 0)
+    for (const ResourceId served : owners_[resource.value]) close(served);
+  enough_slots_ = enough_slots();  // of those that are left
+  return lost;
 }
 
 std::size_t RayControl::free_slots() const {
@@ -91,10 +107,10 @@ std::size_t RayControl::free_slots() const {
   return total;
 }
 
-ResourceId RayControl::emptiest() const {
-  ResourceId best(turn_ % resources_);
-  for (std::uint32_t i = 1; i < resources_; ++i) {
-    const ResourceId r((turn_ + i) % resources_);
+ResourceId RayControl::emptiest(const std::vector<ResourceId>& of) const {
+  ResourceId best = of[turn_ % of.size()];
+  for (std::size_t i = 1; i < of.size(); ++i) {
+    const ResourceId r = of[(turn_ + i) % of.size()];
     if (free_slots(r) > free_slots(best)) best = r;
   }
   return best;

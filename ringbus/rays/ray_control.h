@@ -65,8 +65,9 @@ class RayControl {
   /// Hands a group to its issuer, for RemotePlacing. False: its queue is full, and the group is as it was.
   bool deliver(ResourceId issuer, RayGroup& group);
 
-  /// From now on `resource` gets no rays. To be called before the first submit(), or after discard().
-  void exclude(ResourceId resource);
+  /// From now on `resource` gets no rays, and neither do the resources that it serves as a packet process. Returns the
+  /// slots that are lost. To be called before the first submit(), or after discard().
+  std::size_t exclude(ResourceId resource);
   /// Takes back all slots and forgets all rays. Needs that no ID is in use and no other thread calls.
   void discard();
   /// Places a batch, behind the rays that still wait for slots.
@@ -143,7 +144,9 @@ class RayControl {
   ResourceId next_issuer() {
     return share_.alone() ? next_resource() : ResourceId(share_.arc_begin() + turn_++ % share_.arc_size());
   }
-  ResourceId emptiest() const;
+  ResourceId emptiest() const { return emptiest(owners_.front()); }
+  ResourceId emptiest(const std::vector<ResourceId>& of) const;
+  std::size_t enough_slots() const;
   std::size_t free_slots(const std::vector<ResourceId>& of) const;
   /// The resources that rays of a group of `issuer` may go to.
   const std::vector<ResourceId>& owners(ResourceId issuer) const {

@@ -46,10 +46,13 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
     for (std::size_t i = bundle; i < std::min(bundle + group_rays_, waiting_bundles_.size()); ++i)
       wanted += waiting_bundles_[i];
     const std::uint32_t turn = turn_;
-    ResourceId issuer = local_ && placement_ == Placement::kBalanced ? emptiest() : next_resource();
+    ResourceId issuer = !managers_.empty()                             ? emptiest_manager()
+                        : local_ && placement_ == Placement::kBalanced ? emptiest()
+                                                                       : next_resource();
     if (local_ && rule_ != nullptr) issuer = chosen(rays[done]);
     if (local_ && rule_ != nullptr && free_slots(issuer) < std::min(wanted, enough_slots_)) issuer = emptiest();
-    if ((local_ ? free_slots(issuer) : free_slots()) < std::min(wanted, enough_slots_)) {
+    const std::vector<ResourceId>& owners = this->owners(issuer);
+    if ((local_ ? free_slots(issuer) : free_slots(owners)) < std::min(wanted, enough_slots_)) {
       slot_waits_.fetch_add(1, std::memory_order_relaxed);
       if (local_ && placement_ == Placement::kRoundRobin && free_slots(emptiest()) >= std::min(wanted, enough_slots_))
         continue;
@@ -65,9 +68,9 @@ std::size_t RayControl::place_bundles(std::span<const RayRequest> rays) {
       const std::size_t size = waiting_bundles_[bundle];
       ResourceId owner = local_                               ? issuer
                          : rule_ != nullptr                   ? chosen(rays[done])
-                         : placement_ == Placement::kBalanced ? emptiest()
-                                                              : next_resource();
-      if (!local_ && free_slots(owner) < size) owner = emptiest();
+                         : placement_ == Placement::kBalanced ? emptiest(owners)
+                                                              : next_of(owners);
+      if (!local_ && free_slots(owner) < size) owner = emptiest(owners);
       if (free_slots(owner) < size) {
         room = false;
         break;

@@ -74,6 +74,28 @@ void check_own_of(const Config& config, const OwnOf& one, const RuleBreach& brea
   });
 }
 
+/// A packet process that serves resources has no testers that could be slow, and nobody takes over its resources: their
+/// rays go to those of another.
+void check_faulty_manager(const Config& config, const RuleBreach& breach) {
+  const FaultsConfig::Resource& fault = config.faults.resource;
+  using Kind = FaultsConfig::Resource::Kind;
+  const bool is_process = fault.number >= ray_owners(config.topology) && fault.number < config.topology.resources;
+  if (fault.kind == Kind::kNone) return;
+  const auto refuse = [&](std::string_view key, std::string_view why, std::string_view expected) {
+    breach(std::string(key), fmt::format("{}; expected {}, found {}", why, expected, fault.number));
+  };
+  constexpr std::string_view number = "faults.resource.number";
+  const std::string resources = fmt::format("a resource from 0 to {}", ray_owners(config.topology) - 1);
+  if (is_process && config.engine.kind == EngineKind::kNative)
+    refuse(number, "in the native engine a packet_process that serves resources has no faults yet", resources);
+  else if (is_process && fault.kind == Kind::kSlow)
+    refuse(number, "a packet_process that serves resources has no testers that could be slow", resources);
+  else if (is_process && fault.kind == Kind::kStop && managers_of(config.topology) == 1)
+    refuse(number, "when a packet_process stops, another one has to continue, and there is no other", resources);
+  else if (!is_process && fault.kind == Kind::kStop && ray_owners(config.topology) == 1)
+    refuse(number, "when a resource stops, another that owns rays has to continue", "two resources at least");
+}
+
 /// Packet processes that serve resources hold collections alone: they have no rays, testers and shapes, and the
 /// resources have no collections.
 void check_managers(const Config& config, const RuleBreach& breach) {
@@ -107,14 +129,11 @@ void check_managers(const Config& config, const RuleBreach& breach) {
   const Placement placement = config.rays.placement;
   value(placement != Placement::kBalanced && placement != Placement::kRoundRobin, "rays.placement",
         "new rays go to the resources of one packet_process", "balanced or round_robin", enum_name(placement));
-  value(config.bundles.size > 0, "bundles.size", "bundles are placed among all resources yet", "0",
-        std::to_string(config.bundles.size));
   value(config.packets.carry == PacketCarry::kData, "packets.carry",
         "a packet_process reads no shapes: the resources do, each from its memory", "reference", "data");
   refuse(config.shading.idle_resources_shade, "shading.idle_resources_shade",
          "a packet_process is no resource that shades; expected false, found true");
-  refuse(config.faults.resource.kind != FaultsConfig::Resource::Kind::kNone, "faults.resource.kind",
-         "resources that a packet_process serves have no faults yet; expected none");
+  check_faulty_manager(config, breach);
   for_each_own(c, [&](const OwnOf& one) { check_own_of(config, one, breach); });
 }
 

@@ -157,8 +157,7 @@ void ShadingAgent::give_up(Cycle now) {
 void ShadingAgent::restart(Cycle now) {
   machine_.control.discard();
   placement_.slots().clear(now);
-  machine_.control.exclude(ResourceId(loss_.stopped()));
-  open_.remove_slots(machine_.stores[loss_.stopped()]->slots());
+  open_.remove_slots(machine_.control.exclude(ResourceId(loss_.stopped())));
   placement_.order_all(NewRays::Order::kResume, now);
   if (const RayBatch rays = loss_.restart(now); !rays.empty()) placement_.place_again(rays, now);
 }

@@ -52,7 +52,7 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       issue_(contexts_.parts(), settings, contexts_, help_, room_),
       entry_(machine, resource_, logic_, *ports_.new_rays, travelling_, dispatch_, egress_, room_, recorder_),
       dispatcher_(contexts_.parts(), settings, ports_.in, contexts_, issue_, entry_, help_),
-      fault_(settings.fault, id),
+      fault_(settings.fault, id, machine.stores[id.value]->slots() > 0),
       samples_(resource_.collections(), settings.observed.samples,
                counter_index(PortCounter::kBusy, ports_.out.size(), kFirstPortCounter)),
       ledger_(tester_),
@@ -97,7 +97,7 @@ void Tile::begin_step(Cycle now) {
   samples_.count_ids(now);
   egress_.take_credits(now);
   resource_.ripen(now);
-  if (fault_.stops(sink_.statistics().rays_completed)) stop(now);
+  if (fault_.stops(sink_.statistics())) stop(now);
   const bool side = due_.side <= now;
   if (side) {
     shapes_.take_answers(now);
@@ -118,7 +118,7 @@ void Tile::end_step(Cycle now) {
   if (logic_.draining() && drained() && fault_.tells_drained())
     completions_.port().notify(CompletedRays::Note::kDrained, now);
   // Dispatch takes nothing up then; packets in test are finished.
-  if (const Cycle pause = fault_.pauses(sink_.statistics().rays_completed); pause > 0) dispatch_.pause(now, pause);
+  if (const Cycle pause = fault_.pauses(sink_.statistics()); pause > 0) dispatch_.pause(now, pause);
   help_.notify(now, contexts_.all_free() && (issue_.empty() || issue_.front_is_ready()));
   issue_.look_ahead();
   due_.start = contexts_.next_start_after(now);

@@ -126,6 +126,27 @@ TEST(GraphRun, MachinesSideBySideHaveNoLinkBetweenTheirHalves) {
                                             "link crosses it\n"));
 }
 
+// A packet process stops with bundles at it, and the other half of the machine has the same hits and picture.
+TEST(GraphRun, HitsSurviveAPacketProcess) {
+  const auto run = [&](const std::vector<std::string>& sets) {
+    std::vector<std::string> arguments{"run",
+                                       CAROUSEL_SOURCE_DIR "/configs/packet_processes.yaml",
+                                       "--json",
+                                       "--set",
+                                       "image.width=32",
+                                       "--set",
+                                       "image.height=20"};
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const Outcome out = Program().run(arguments);
+    EXPECT_EQ(out.status, 0) << out.err;
+    return out.status == 0 ? Json::parse(out.out) : Json();
+  };
+  const Json whole = run({}), stopped = run({"bundles.size=4", "faults.resource.kind=stop", "faults.resource.number=9",
+                                             "faults.resource.after_rays=100"});
+  EXPECT_EQ(stopped["digest"], whole["digest"]);
+  EXPECT_GT(stopped["rays"]["restarted"], 0);
+}
+
 TEST(GraphRun, ASlowLinkIsFelt) {
   const Program program;
   program.write("graph.yaml", kMachine + kClusters);

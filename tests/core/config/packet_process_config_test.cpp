@@ -101,9 +101,7 @@ TEST(PacketProcessConfig, WhatItDoesNotHaveIsRefused) {
   refused("collections: {when_full: spill}\n",
           "collections.when_full: p has no memory to spill to; expected reserve, or a cache that serves p");
   refused("rays: {placement: first_taker}\n", "rays.placement: new rays go to the resources of one packet_process");
-  refused("bundles: {size: 4}\n", "bundles.size: bundles are placed among all resources yet");
   refused("shading: {idle_resources_shade: true}\n", "shading.idle_resources_shade: ");
-  refused("faults: {resource: {kind: stop, number: 0}}\n", "faults.resource.kind: ");
   refused("  visit: all\n", "topology.visit: a packet visits resources of its packet_process alone");
   refused("  overrides: [{nodes: p, slots_per_resource: 4}]\n",
           "topology.overrides.0.slots_per_resource: a packet_process that serves resources has collections alone");
@@ -119,6 +117,38 @@ TEST(PacketProcessConfig, WhatItDoesNotHaveIsRefused) {
                               "[{name: r, count: 2}, {name: p, kind: packet_process, serves: 'r[*]'}], links: [{from: "
                               "'r[*]', to: p, both: true}]}\n")),
               Contains(HasSubstr("expected a node of the kind cache")));
+}
+
+// A fault needs a part that has it, and another that goes on when one stops.
+TEST(PacketProcessConfig, FaultsHaveAPlace) {
+  const std::string two = "    - {name: p, kind: packet_process, count: 2, serves: 'r[*]'}\n";
+  const std::string links = "    - {from: 'r[*]', all_to: 'p[*]', both: true}\n";
+  const auto fault = [](const std::string& kind, int number) {
+    return "faults: {resource: {kind: " + kind + ", number: " + std::to_string(number) + "}}\n";
+  };
+  for (const char* kind : {"pause", "stop"})
+    for (const int number : {0, 3, 4, 5}) EXPECT_TRUE(refusal(two, links, fault(kind, number)).empty()) << number;
+  EXPECT_THAT(
+      refusal(two, links, fault("slow", 5)),
+      ElementsAre(HasSubstr("faults.resource.number: a packet_process that serves resources has no testers that "
+                            "could be slow; expected a resource from 0 to 3, found 5")));
+  EXPECT_THAT(refusal(kOne, kStar, fault("stop", 4)),
+              ElementsAre(HasSubstr("faults.resource.number: when a packet_process stops, another one has to continue, "
+                                    "and there is no other; expected a resource from 0 to 3, found 4")));
+  EXPECT_TRUE(refusal(kOne, kStar, fault("pause", 4)).empty());
+  EXPECT_THAT(texts(issues_of("scene: {builtin: cornell}\nengine: {kind: native}\ntopology: {shape: graph, nodes: "
+                              "[{name: r, count: 2}, {name: p, kind: packet_process, serves: 'r[*]'}], links: [{from: "
+                              "'r[*]', to: p, both: true}]}\n" +
+                              fault("pause", 2))),
+              ElementsAre(HasSubstr("faults.resource.number: in the native engine a packet_process that serves "
+                                    "resources has no faults yet; expected a resource from 0 to 1, found 2")));
+  EXPECT_THAT(
+      texts(issues_of("scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology: {shape: graph, nodes: "
+                      "[{name: r}, {name: p, kind: packet_process, serves: r}, {name: l2, kind: cache}], links: "
+                      "[{from: r, to: p, both: true}, {from: r, to: l2, both: true, carries: [shapes]}]}\n" +
+                      fault("stop", 0))),
+      ElementsAre(HasSubstr("faults.resource.number: when a resource stops, another that owns rays has to "
+                            "continue; expected two resources at least, found 0")));
 }
 
 // A packet process has no rays, so there is no order in which an issuer tests its own.

@@ -48,13 +48,82 @@ TEST_F(PacketProcesses, FindTheSameHits) {
 }
 
 TEST_F(PacketProcesses, AreTheSameMachineInTheNativeEngine) {
-  for (const std::size_t threads : {1u, 4u}) {
-    Cell cell;
-    cell.config =
-        load_config({"scene: {builtin: cornell}\nengine: {kind: native}\n" + kRays + kNodes + kLinks, "m.yaml"}).config;
-    cell.threads = threads;
-    EXPECT_EQ(run_cell(scene_, cell).fault, "");
+  const std::string machine = "scene: {builtin: cornell}\nengine: {kind: native}\n" + kRays + kNodes + kLinks;
+  for (const char* set : {"bundles.size=0", "bundles.size=4", "faults.resource.kind=stop"}) {
+    SCOPED_TRACE(set);
+    for (const std::size_t threads : {1u, 4u}) {
+      Cell cell;
+      cell.config =
+          load_config({machine, "m.yaml"}, std::vector<std::string>{"bundles.builder.threshold=2", set}).config;
+      cell.threads = threads;
+      EXPECT_EQ(run_cell(scene_, cell).fault, "");
+    }
   }
+}
+
+// Rays of a bundle live at one resource of the packet process that has its ID.
+TEST_F(PacketProcesses, CollectBundles) {
+  for (const char* set : {"bundles.lifetime=persistent", "bundles.lifetime=reformed", "bundles.split=builder",
+                          "bundles.split=untested", "bundles.leaf=primitives", "rays.placement=round_robin"}) {
+    SCOPED_TRACE(set);
+    for (const std::size_t threads : {1u, 3u}) {
+      const Outcome out = run_text(scene_, kMachine, {"bundles.size=4", "bundles.builder.threshold=2", set}, threads);
+      std::uint64_t rays = 0, admitted = 0;
+      for (const BundleCounts& at_depth : out.sum.bundles) rays += at_depth.loaded_rays;
+      for (const std::size_t process : {6u, 7u}) admitted += out.result.resources[process].rays_admitted;
+      EXPECT_GT(rays, 0u);
+      EXPECT_LT(admitted, out.result.rays_completed);
+      EXPECT_EQ(admitted, out.sum.rays_admitted);
+    }
+  }
+}
+
+// A resource or a packet process stops: the rays that are not back at shading begin again at the others.
+TEST_F(PacketProcesses, GoOnWhenOneStops) {
+  for (const char* number : {"0", "4", "6", "7"})
+    for (const char* after : {"0", "20"})
+      for (const char* set : {"bundles.builder.threshold=2", "collections.traversal=ordered"}) {
+        SCOPED_TRACE(number);
+        SCOPED_TRACE(after);
+        SCOPED_TRACE(set);
+        const Outcome out = run_text(
+            scene_, kMachine,
+            {"faults.resource.kind=stop", "faults.resource.silence_cycles=500",
+             set[0] == 'b' ? "bundles.size=4" : "bundles.size=0", std::string("faults.resource.number=") + number,
+             std::string("faults.resource.after_rays=") + after, set},
+            after[0] == '0' ? 1 : 3);
+        EXPECT_GT(out.result.rays_restarted, 0u);
+      }
+}
+
+// Nobody takes over the resources of a packet process, so those of the one that has stopped at once complete no ray.
+TEST_F(PacketProcesses, TheResourcesOfAStoppedOneRest) {
+  const Outcome out = run_text(scene_, kMachine, {"faults.resource.kind=stop", "faults.resource.number=7"});
+  for (std::size_t r = 0; r < 6; ++r) EXPECT_EQ(out.result.resources[r].rays_completed > 0, r < 3) << r;
+  EXPECT_EQ(out.result.resources[7].packets_issued, 0u);
+}
+
+// A packet process begins its fault by the IDs that it has taken in, as no ray completes there.
+TEST_F(PacketProcesses, CountTheRaysThatTheyTakeIn) {
+  const auto taken = [&](const char* after) {
+    return run_text(scene_, kMachine,
+                    {"faults.resource.kind=stop", "faults.resource.number=7",
+                     std::string("faults.resource.after_rays=") + after})
+        .result.resources[7]
+        .rays_admitted;
+  };
+  EXPECT_EQ(taken("0"), 0u);
+  EXPECT_GE(taken("40"), 40u);
+  EXPECT_LT(taken("40"), 40u + 8);  // packets have 8 rays
+}
+
+TEST_F(PacketProcesses, APauseOfOneIsFelt) {
+  const auto paused = [&](const char* cycles) {
+    return cycles_of(
+        scene_, kMachine,
+        {"faults.resource.kind=pause", "faults.resource.number=6", std::string("faults.resource.cycles=") + cycles});
+  };
+  EXPECT_GT(paused("20000"), paused("1") + 10'000);
 }
 
 TEST_F(PacketProcesses, KeepTheCollectionsAndNoRays) {
@@ -78,12 +147,18 @@ TEST_F(PacketProcesses, SpillToTheCacheThatServesThem) {
       "rays: {slots_per_resource: 64}\npackets: {rays: 8}\n" + kNodes +
       "    - {name: l2_a, kind: cache, serves: 'r[0..2]'}\n    - {name: l2_b, kind: cache, serves: 'r[3..5], p[*]'}\n" +
       kLinks + "    - {from: 'p[0..1]', to: l2_b, both: true, latency_cycles: LATENCY, carries: [shapes]}\n" + kShapes;
-  const auto run = [&](const std::string& latency) {
+  const auto machine_at = [&](const std::string& latency) {
     std::string text = machine;
     text.replace(text.find("LATENCY"), 7, latency);
-    return run_text(scene_, text + "collections: {when_full: spill}\n");
+    return text + "collections: {when_full: spill}\n";
   };
+  const auto run = [&](const std::string& latency) { return run_text(scene_, machine_at(latency)); };
   const Outcome few = run("10"), far = run("90");
+  for (const char* number : {"1", "7"}) {
+    const Outcome out = run_text(
+        scene_, machine_at("10") + "faults: {resource: {kind: stop, after_rays: 40, number: " + number + "}}\n");
+    EXPECT_GT(out.result.rays_restarted, 0u) << number;
+  }
   std::uint64_t spilled = 0, over_links = 0;
   for (std::size_t r = 0; r < 8; ++r) {
     spilled += few.result.collections[r].spilled;

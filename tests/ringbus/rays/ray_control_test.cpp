@@ -92,6 +92,54 @@ TEST(RayControl, APacketProcessWithFewSlotsGetsRaysToo) {
   for (const RayId id : few[0].ids) EXPECT_EQ(stores[0]->layout().owner(id), ResourceId(8));
 }
 
+// Four resources with 16 slots each: the packet process 4 serves the first three, and 5 the last.
+TEST(RayControl, GroupsAvoidWhatHasStopped) {
+  for (const std::int64_t bundled : {0, 4})
+    for (const std::uint32_t stopped : {0u, 3u, 4u, 5u}) {
+      SCOPED_TRACE(bundled);
+      SCOPED_TRACE(stopped);
+      Config config;
+      config.packets.rays = 8;
+      config.bundles.size = bundled;
+      const auto stores = make_ray_stores({16, 16, 16, 16, 0, 0}, config.bundles);
+      RayControlSettings settings =
+          ray_control_settings(config.rays, config.collections, config.packets, config.bundles, 1, 1.0f);
+      settings.manager_of = {4, 4, 4, 5, 4, 5};
+      RayControl control(settings, stores);
+      EXPECT_EQ(control.exclude(ResourceId(stopped)), stopped == 4 ? 48u : 16u);
+      control.submit(rays(64));
+      std::size_t placed = 0;
+      for (const std::uint32_t issuer : {4u, 5u}) {
+        std::vector<RayGroup> groups;
+        control.collect(ResourceId(issuer), groups);
+        EXPECT_EQ(groups.empty(), stopped == issuer || (stopped == 3 && issuer == 5));
+        for (const RayGroup& group : groups)
+          for (const RayId id : group.ids) {
+            const ResourceId owner = stores[0]->layout().owner(id);
+            EXPECT_NE(owner, ResourceId(stopped));
+            EXPECT_EQ(settings.manager_of[owner.value], issuer);
+            const std::uint32_t slot = stores[0]->layout().slot(id);
+            const RayStore& store = *stores[owner.value];
+            placed += store.is_bundle(slot) ? store.rays_of(slot).size() : 1;
+          }
+      }
+      EXPECT_EQ(placed, stopped == 4 ? 16u : 48u);
+    }
+}
+
+// A quarter of the slots that were there at first would be more than the resource that is left ever has.
+TEST(RayControl, WhatIsLeftOfAMachineIsEnough) {
+  std::vector<std::unique_ptr<RayStore>> stores;
+  for (std::uint32_t r = 0; r < 2; ++r) stores.push_back(std::make_unique<RayStore>(ResourceId(r), r == 0 ? 1024 : 16));
+  Config config;
+  config.packets.rays = 64;
+  RayControl control(ray_control_settings(config.rays, config.collections, config.packets, config.bundles, 1, 1.0f),
+                     stores);
+  EXPECT_EQ(control.exclude(ResourceId(0)), 1024u);
+  control.submit(rays(64));
+  EXPECT_EQ(control.slots_used(), 16u);
+}
+
 TEST(RayControl, RoundRobinDealsRaysOneByOne) {
   Bench bench(Placement::kRoundRobin, Home::kIssuer, 3, 64, 6);
   bench.control->submit(rays(6));

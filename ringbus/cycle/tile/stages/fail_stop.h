@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/config/fields/faults.h"
+#include "core/statistics/resource_counts.h"
 #include "core/types/ids.h"
 #include "ringbus/time/clock.h"
 
@@ -12,7 +13,10 @@ namespace carousel::ringbus::cycle {
 /// nothing since another one has stopped.
 class FailStop {
  public:
-  FailStop(const FaultsConfig::Resource& fault, ResourceId here) : fault_(fault) {
+  /// `owns_rays`: false for a packet process that serves resources. No ray completes there, so it counts the IDs that
+  /// it has taken in.
+  FailStop(const FaultsConfig::Resource& fault, ResourceId here, bool owns_rays)
+      : fault_(fault), owns_rays_(owns_rays) {
     using Kind = FaultsConfig::Resource::Kind;
     const bool is_here = fault.number == here.value;
     pauses_ = is_here && fault.kind == Kind::kPause;
@@ -21,15 +25,15 @@ class FailStop {
 
   /// Neither has happened yet, and one of them will.
   bool is_ahead() const { return pauses_ || stops_; }
-  /// Tells whether the resource stops now, with so many completed rays; once.
-  bool stops(std::uint64_t completed) {
-    if (!stops_ || !is_due(completed)) return false;
+  /// Tells whether the resource stops now, by what it has counted; once.
+  bool stops(const ResourceCounts& counts) {
+    if (!stops_ || !is_due(counts)) return false;
     stops_ = false;
     return true;
   }
   /// The cycles for which it pauses from now on; once, otherwise 0.
-  Cycle pauses(std::uint64_t completed) {
-    if (!pauses_ || !is_due(completed)) return 0;
+  Cycle pauses(const ResourceCounts& counts) {
+    if (!pauses_ || !is_due(counts)) return 0;
     pauses_ = false;
     return static_cast<Cycle>(fault_.cycles);
   }
@@ -48,9 +52,13 @@ class FailStop {
   std::uint64_t packets_discarded() const { return discarded_; }
 
  private:
-  bool is_due(std::uint64_t completed) const { return completed >= static_cast<std::uint64_t>(fault_.after_rays); }
+  bool is_due(const ResourceCounts& counts) const {
+    const std::uint64_t rays = owns_rays_ ? counts.rays_completed : counts.rays_admitted;
+    return rays >= static_cast<std::uint64_t>(fault_.after_rays);
+  }
 
   FaultsConfig::Resource fault_;
+  bool owns_rays_;
   bool pauses_ = false, stops_ = false, drained_sent_ = false;
   std::uint64_t discarded_ = 0;
 };
