@@ -99,6 +99,9 @@ class OutPortOf {
   /// without waiting for the tail.
   void push(const T& token, Cycle ready, bool cut_through) { queue_.push_back({token, ready, cut_through}); }
 
+  /// The link has moved a packet for so many cycles before it was pushed, as the port of a ring does, flit by flit.
+  void count_moved(Cycle cycles) { busy_ += cycles; }
+
   void take_credits(Cycle now) {
     if (faults_) [[unlikely]]
       return take_uncertain_credits(now);

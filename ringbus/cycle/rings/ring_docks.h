@@ -19,9 +19,10 @@
 namespace carousel::ringbus::cycle {
 
 /// A ring whose stops have no queues as one node of a network of packets T (Token, or those of synthetic traffic), to
-/// which each node that stands at a stop has a wire of a cycle, and another one back: its port. A packet waits at the
-/// end of its wire until the rule of the stops lets it on, and holds up those behind it. Where it gets off there is
-/// room for all packets there are, unless the node is a router with few places; it goes on when its last flit has come.
+/// which each node that stands at a stop has a wire of a cycle, and another one back: its port, which a packet keeps
+/// busy for its bytes over the width of the port. A packet waits at the end of its wire until the rule of the stops
+/// lets it on, and holds up those behind it. Where it gets off there is room for all packets there are, unless the node
+/// is a router with few places; it goes on when its last flit has come.
 template <class T>
 class RingDocks {
  public:
@@ -126,6 +127,7 @@ class RingDocks {
       T token = docks_->tokens_[packet.tag];
       docks_->unused_.push_back(packet.tag);
       token.link_cycles = 1;  // the port has moved it, flit by flit
+      out_->count_moved(ceil_div(packet.bytes, docks_->shape_.port) - 1);
       if (few_) out_->release();
       out_->push(token, tail, true);
     }

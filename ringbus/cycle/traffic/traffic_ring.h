@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <utility>
@@ -41,7 +42,7 @@ class TrafficRing final : public TrafficAgent {
   }
   Cycle busy_in_window(std::size_t port) const override {
     const auto before = [&](std::size_t i) { return i < marks_passed_ ? busy_[port][i] : out_[port].moved(mark(i)); };
-    return before(1) - before(0);
+    return std::min(before(1) - before(0), mark(1) - mark(0));  // ports count a packet when its last flit has come
   }
 
   const RingDocks<TrafficToken>& docks() const { return docks_; }

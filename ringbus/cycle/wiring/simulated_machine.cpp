@@ -284,8 +284,7 @@ LinkUse SimulatedMachine::use_of_link(std::size_t number, std::size_t port_numbe
   LinkUse out{wire.from.value, wire.to.value, {}, network_.far(number).queue, {}, wire.mhz};
   out.bytes = network_.near(number).packets.bytes().sent;
   out.use = {port.busy(from.to_network(end)), port.stalled()};
-  if (wire.mhz == 0 && from.equal() && to.equal()) return out;
-  // Rounding must not make more of it than there is.
+  // Rounding must not make more of it than there is, nor a ring's port, which moves packets while others wait in it.
   out.use.busy = std::min(end, from.before(out.use.busy));
   out.use.stalled = std::min(end - out.use.busy, from.before(out.use.stalled));
   out.queue.packet_cycles = to.before(out.queue.packet_cycles);

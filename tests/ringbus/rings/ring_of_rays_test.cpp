@@ -83,6 +83,34 @@ TEST_F(RingOfRays, TakesTheClosedForm) {
   EXPECT_GT(alone(slots("{rule: slots}", 10), "clocks: {noc: 500, synchroniser_cycles: 0}\n"), queued);
 }
 
+// The ports of the stops, to and from the ring, are as busy as a packet has bytes over their width, however slow their
+// clock: with a byte a cycle, as its bytes say. Each packet gets on once, and off once.
+TEST_F(RingOfRays, PortsAreBusyForTheBytesOfTheirPackets) {
+  for (const char* rule : {"slots", "grants"})
+    for (const char* clocks : {"", "clocks: {noc: 500, synchroniser_cycles: 1}\n"})
+      for (const std::uint64_t width : {1u, 8u, 16u}) {
+        SCOPED_TRACE(fmt::format("{} {} {}", rule, clocks, width));
+        const cycle::CycleResult c =
+            *run_text(scene_, clocks + std::string(kSmall) +
+                                  ring(fmt::format("bytes_per_cycle: 16, latency_cycles: 2, stops: {{rule: {}, "
+                                                   "port_bytes_per_cycle: {}}}",
+                                                   rule, width)))
+                 .result.cycle;
+        const std::uint64_t slower = *clocks == 0 ? 1 : 2;  // cycles of the resources for one of the ring
+        std::uint64_t on = 0, off = 0, packets = 0;
+        for (const cycle::LinkUse& link : c.links) {
+          EXPECT_LE(link.use.busy + link.use.stalled, c.cycles);
+          if (link.from != 5 && link.to != 5) continue;
+          (link.to == 5 ? on : off) += link.use.busy;
+          EXPECT_GE(link.use.busy * width, slower * link.bytes);
+          EXPECT_LE(width == 1 ? link.use.busy : 0, slower * link.bytes);
+        }
+        for (const cycle::LinkUse& link : c.links) packets += link.to == 5 ? link.bytes : 0;
+        EXPECT_EQ(on, off);
+        EXPECT_LT(on * width, slower * (packets + width * c.stops->starts));
+      }
+}
+
 constexpr const char* kDomains =
     "topology:\n  shape: graph\n"
     "  nodes: [{name: a, count: 3}, {name: b, count: 3}, {name: x, kind: router, count: 2, latency_cycles: 2ROUTER}]\n"

@@ -62,6 +62,13 @@ TEST(RingsThatMeet, APacketAloneTakesTheClosedForm) {
         EXPECT_DOUBLE_EQ(result.zero_load_latency(config.workload.traffic), static_cast<double>(expected));
         EXPECT_EQ(result.flit_hops, 40 * flits * (way.a + way.b + 2 * (1 + way.x)));
         EXPECT_EQ(result.stops->extra_rounds, 0u);
+        std::uint64_t packets = 0;
+        for (std::size_t i = 0; i < result.links.size(); ++i) {  // the ports of both rings, which are nodes 8 and 9
+          if (result.links[i].from < 8 && result.links[i].to < 8) continue;
+          EXPECT_EQ(result.links[i].use.busy, result.link_packets[i] * flits * port);
+          packets += result.link_packets[i];
+        }
+        EXPECT_EQ(packets, 40 * 2 * (1 + way.x));
       }
 }
 
