@@ -130,8 +130,14 @@ void add_commands(CLI::App& program, Arguments& arguments) {
   schema->add_option("file", arguments.schema.file, "config or report")
       ->required()
       ->check(CLI::IsMember({"config", "report"}));
-  schema->add_flag("--markdown", arguments.schema.markdown,
-                   "Print every key with its meaning as Markdown (default: JSON Schema)");
+  CLI::Option* markdown = schema->add_flag("--markdown", arguments.schema.markdown,
+                                           "Print every key with its meaning as Markdown (default: JSON Schema)");
+  schema
+      ->add_option("--graph", arguments.schema.graph,
+                   "With config: keys that name nodes and clocks take those of this configuration, whose topology is a "
+                   "graph (default: any names)")
+      ->excludes(markdown)
+      ->type_name("FILE");
   add_plugin_option(*schema, arguments.schema.plugins, "none");
   CLI::App* completion = program.add_subcommand("completion", "Print the completion of this program for a shell");
   completion->add_option("shell", arguments.completion.shell, "bash or zsh")

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <regex>
 #include <string>
 #include <vector>
 
@@ -51,6 +52,9 @@ inline std::vector<std::string> schema_problems(const nlohmann::ordered_json& sc
   if (value.is_string() && schema.contains("minLength") &&
       value.get<std::string>().size() < schema["minLength"].get<std::size_t>())
     fail("too short");
+  if (value.is_string() && schema.contains("pattern") &&
+      !std::regex_search(value.get<std::string>(), std::regex(schema["pattern"].get<std::string>())))
+    fail("breaks the pattern");
   for (const char* combine : {"anyOf", "oneOf"}) {
     if (!schema.contains(combine)) continue;
     int matches = 0;

@@ -75,6 +75,9 @@ TEST(CommandLine, RefusesBadUsageWithTheNearestName) {
            {{"run", "a.yaml", "--set"}, "--set"},
            {{"accuracy", "--cases", "3"}, "--cases requires --certify"},
            {{"accuracy", "--certify", "--cases", "3", "--seconds", "2"}, "excludes"},
+           {{"schema", "config", "--graph", "a.yaml", "--markdown"}, "--markdown excludes --graph"},
+           {{"schema", "report", "--graph", "a.yaml"}, "--graph: a report names no nodes; expected schema config"},
+           {{"schema", "config", "--graph", "none.yaml"}, "none.yaml"},
            {{"schema", "repot"}, "repot not in {config,report}"}}) {
     const Outcome outcome = program.run(bad.arguments);
     EXPECT_EQ(outcome.status, 2) << bad.message;
@@ -92,6 +95,20 @@ TEST(CommandLine, PrintsSchemas) {
   }
   EXPECT_THAT(program.run({"schema", "config", "--markdown"}).out, HasSubstr("| `image.width` |"));
   EXPECT_THAT(program.run({"schema", "report", "--markdown"}).out, HasSubstr("| `rays.emitted` | rays |"));
+}
+
+TEST(CommandLine, PrintsTheSchemaOfAGraph) {
+  const Program program;
+  const Outcome outcome =
+      program.run({"schema", "config", "--graph", CAROUSEL_SOURCE_DIR "/configs/packet_processes.yaml"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const auto links = nlohmann::json::parse(outcome.out)["properties"]["topology"]["properties"]["links"];
+  EXPECT_THAT(links["items"]["properties"]["from"]["anyOf"][0]["enum"].dump(), HasSubstr("\"unit[*]\",\"dram[*]\""));
+  program.write("ring.yaml", "scene: {builtin: cornell}\ntopology: {shape: ring}\n");
+  const Outcome refused = program.run({"schema", "config", "--graph", "ring.yaml"});
+  EXPECT_EQ(refused.status, 2);
+  EXPECT_THAT(refused.err, HasSubstr("ring.yaml:2:19: topology.shape: expected graph, whose nodes have names, found "
+                                     "ring"));
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 #include <nlohmann/json.hpp>
 
 #include "core/config/config_page.h"
+#include "core/config/graph/graph.h"
+#include "core/config/graph/names_in_schema.h"
 #include "core/config/load/load.h"
 #include "core/config/not_built.h"
 #include "core/config/schema.h"
@@ -43,6 +45,69 @@ TEST(ConfigSchema, RefusesWhatTheParserRefuses) {
   EXPECT_TRUE(refused("/scene/file", "both.glb"));
   EXPECT_FALSE(refused("/testers/box", 3));
   EXPECT_FALSE(refused("/engine/threads", 3));
+}
+
+/// A graph with a group of 12, single nodes, and routers, which own no rays.
+const char* const kDrawing =
+    "scene: {builtin: cornell}\nengine: {kind: cycle}\nclocks: {slow: 700}\ntopology:\n  shape: graph\n  nodes:\n"
+    "    - {name: r, count: 12}\n    - {name: one}\n    - {name: x, kind: router, count: 1}\n    - {name: hub, kind: "
+    "router}\n  links:\n    - {ring: 'r[*], one, x[0]', clock: slow}\n    - {from: 'r[*], one', to: hub, both: true}\n";
+
+Json drawn_schema(const Config& config) {
+  Json schema = config_schema();
+  config::name_in_schema(schema, config.topology, config.clocks);
+  return schema;
+}
+
+// The keys take what finds nodes in the graph, and nothing else: the patterns are those of NodeNames.
+TEST(ConfigSchema, OfAGraphTakesItsNames) {
+  const Config config = parse_config(kDrawing, "a");
+  const Json schema = drawn_schema(config), topology = schema["properties"]["topology"]["properties"];
+  EXPECT_EQ(schema_problems(schema, config_json(config)), std::vector<std::string>{});
+  std::vector<config::GraphIssue> issues;
+  const config::Graph graph = config::draw_graph(config.topology, issues);
+  std::vector<std::string> texts{"",       "r[12]",  "r[-1]",    "r[*",     "r*]",     "r[]",  "r[0..]",
+                                 "r[..3]", "r[1.3]", "r[0..12]", "one[0]",  "x",       "x[1]", "r",
+                                 "q[0]",   "ro",     "rr[0]",    "one one", "r[1] one"};
+  for (int i = 0; i < 12; ++i) {
+    texts.push_back("r[" + std::to_string(i) + "]");
+    texts.push_back("r[" + std::to_string(11 - i) + ".." + std::to_string(i) + "]");
+    texts.push_back("r[0" + std::to_string(i) + "]");
+  }
+  for (const char* text : {"r[*]", "one", "x[0]", "x[*]", "hub"}) texts.push_back(text);
+  const std::size_t single = texts.size();
+  for (std::size_t i = 0; i < single; ++i)
+    for (const char* more : {", one", ",r[3..1] ,hub", ", ", ",,one", " ,x[0]"}) texts.push_back(texts[i] + more);
+  std::size_t taken = 0;
+  for (const std::string& text : texts) {
+    SCOPED_TRACE(text);
+    std::string error;
+    const std::vector<std::uint32_t> nodes = graph.names.find(text, error);
+    const auto takes = [&](const Json& key) { return schema_problems(key, text).empty(); };
+    for (const char* key : {"from", "to", "all_to", "ring", "line", "of"})
+      EXPECT_EQ(takes(topology["links"]["items"]["properties"][key]), !nodes.empty()) << key;
+    const bool own = !nodes.empty() && std::ranges::all_of(nodes, [](std::uint32_t node) { return node < 13; });
+    EXPECT_EQ(takes(topology["nodes"]["items"]["properties"]["serves"]), own);
+    EXPECT_EQ(takes(topology["overrides"]["items"]["properties"]["nodes"]), own);
+    const bool one = text.find_first_of("*.,") == text.npos;
+    EXPECT_EQ(takes(topology["root"]), one && !nodes.empty());
+    taken += !nodes.empty();
+  }
+  EXPECT_GT(taken, 100u);
+  EXPECT_LT(taken, texts.size() - 50);
+}
+
+TEST(ConfigSchema, OfAGraphListsWhatAnEditorCompletes) {
+  const Json topology = drawn_schema(parse_config(kDrawing, "a"))["properties"]["topology"]["properties"];
+  const Json from = topology["links"]["items"]["properties"]["from"];
+  EXPECT_EQ(from["anyOf"][0]["enum"].dump().substr(0, 31), R"(["r[*]","x[*]","r[0]","r[1]","r)");
+  EXPECT_EQ(
+      from["description"],
+      config_schema()["properties"]["topology"]["properties"]["links"]["items"]["properties"]["from"]["description"]);
+  EXPECT_EQ(topology["links"]["items"]["properties"]["clock"]["enum"], Json({"core", "noc", "slow"}));
+  const Json serves = topology["nodes"]["items"]["properties"]["serves"]["anyOf"][0]["enum"];
+  EXPECT_EQ(serves.size(), 14u);  // twelve of the group, the group and the single resource
+  for (const std::string& name : serves.get<std::vector<std::string>>()) EXPECT_NE(name[0], 'h');
 }
 
 TEST(ConfigSchema, DefaultsAreThoseOfTheStructs) {
