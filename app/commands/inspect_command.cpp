@@ -44,9 +44,17 @@ LocatedConfig config_for(const InspectArguments& arguments) {
 
 /// Names what is wrong with the name of a scene, before a configuration is made of it.
 void check_name(const std::string& name) {
+  if (name.starts_with(kBuiltin)) return;
   std::error_code ignored;
-  if (name.starts_with(kBuiltin) || std::filesystem::is_regular_file(name, ignored)) return;
   const auto fail = [&](const std::string& why) { throw FileError(fmt::format("{}: {}", name, why)); };
+  const std::string ending = std::filesystem::path(name).extension().string();
+  const bool there = std::filesystem::is_regular_file(name, ignored);
+  if (there && (ending == ".yaml" || ending == ".yml" || ending == ".json"))
+    fail(
+        fmt::format("is a configuration, by its name; expected a scene file, or {}NAME. carousel check {} shows the "
+                    "machine of a configuration, with nodes, links and cuts",
+                    kBuiltin, name));
+  if (there) return;
   if (std::filesystem::is_directory(name, ignored)) fail("is a folder; expected a scene file");
   if (enum_value<BuiltinScene>(name))
     fail(fmt::format("no such file; the built-in scene is carousel inspect {}{}", kBuiltin, name));

@@ -98,6 +98,21 @@ TEST(Messages, InspectPointsToABuiltInScene) {
   EXPECT_THAT(program.run({"inspect", "none.glb"}).err, HasSubstr("none.glb: no such file; expected a scene file, or"));
 }
 
+TEST(Messages, InspectTellsAConfigurationApart) {
+  const Program program;
+  for (const char* name : {"machine.yaml", "machine.yml", "machine.json"}) {
+    program.write(name, "{\"scene\": {\"builtin\": \"cornell\"}}\n");
+    const Outcome outcome = program.run({"inspect", name});
+    EXPECT_EQ(outcome.status, 2);
+    EXPECT_THAT(outcome.out, testing::IsEmpty());
+    EXPECT_THAT(outcome.err, HasSubstr(std::string(name) +
+                                       ": is a configuration, by its name; expected a scene file, "
+                                       "or builtin:NAME. carousel check " +
+                                       name + " shows the machine"));
+  }
+  EXPECT_THAT(program.run({"inspect", "none.yaml"}).err, HasSubstr("none.yaml: no such file"));
+}
+
 TEST(Messages, InspectCountsWhatTheFileHas) {
   const Program program;
   program.write("a.gltf", scene::GltfBuilder::square().text());
