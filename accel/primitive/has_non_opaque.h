@@ -17,11 +17,18 @@ namespace carousel::accel {
          (t == hit.t && (instance < hit.instance || (instance == hit.instance && primitive < hit.primitive)));
 }
 
+/// Counts an any-hit call.
+template <class Slab>
+void note_call(const LocalRay<Slab>& ray, const Hit& found) {
+  ++ray.counts->any_hit_calls;
+  if (ray.calls != nullptr) ray.calls->push_back({ray.record, found});
+}
+
 /// True if the ray stops at a non-opaque primitive that lies in front of the closest hit so far.
 template <class Slab>
 [[gnu::noinline]] bool any_hit_accepts(const Accel& accel, const LocalRay<Slab>& ray, const Hit& found) {
   if (accel.any_hit == nullptr || (ray.record->tag.flags & kRayForceOpaque) != 0) return true;
-  ++ray.counts->any_hit_calls;
+  note_call(ray, found);
   return accel.any_hit->accepts(ray.record->ray, found.instance, found.primitive, found.u, found.v);
 }
 
@@ -57,7 +64,7 @@ template <class Slab>
     return true;
   }
   if ((ray.record->tag.flags & kRayAll) == 0 || accel.all_hits == nullptr) return false;
-  ray.counts->any_hit_calls += !counted;
+  if (!counted) note_call(ray, found);
   accel.all_hits->add(ray.record->tag.path, found);
   return true;
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <new>
+#include <vector>
 
 #include "accel/box/double_slab.h"
 #include "accel/box/slab.h"
@@ -9,6 +10,7 @@
 #include "accel/structure/accel.h"
 #include "core/config/fields/accuracy.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/types/any_hit.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -42,6 +44,7 @@ struct LocalRay {
   Vec3 origin, direction;
   const RayRecord* record;  ///< the ray in world space, and what it wants
   IntersectionCounts* counts;
+  std::vector<AnyHitCall>* calls = nullptr;  ///< where any-hit calls are noted; null: nowhere
 
   [[gnu::always_inline]] LocalRay(const AccuracyConfig& accuracy, const Ray& ray, std::uint32_t i, float entry,
                                   const RayRecord& of, IntersectionCounts& total)

@@ -9,6 +9,7 @@
 #include "core/config/fields/engine.h"
 #include "core/statistics/cull_counts.h"
 #include "core/statistics/intersection_counts.h"
+#include "core/types/any_hit.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -18,8 +19,9 @@ struct RayMembers {
   RayRecord* records = nullptr;
   const std::uint32_t* slots = nullptr;
   std::size_t count = 0;
-  CullCounts* culls = nullptr;            ///< where cull planes are counted by depth; null: nowhere
-  std::uint8_t* any_hit_calls = nullptr;  ///< null, or one a member: any-hit calls of test_strip() on a leaf
+  CullCounts* culls = nullptr;  ///< where cull planes are counted by depth; null: nowhere
+  std::vector<AnyHitCall>* any_hit_calls =
+      nullptr;  ///< where test_strip() notes any-hit calls, by member; null: nowhere
 };
 
 /// The answer of a strip of boxes. Strips of triangles leave it unchanged; their answer is in the rays' hits.

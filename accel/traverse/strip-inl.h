@@ -38,16 +38,15 @@ HWY_NOINLINE bool test_direct(const Accel& accel, const Node& node, std::uint32_
 /// Tests the primitives as above, for a ray that is not yet in the node's frame.
 template <class Slab>
 HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key, std::uint32_t lanes, RayRecord& record,
-                              std::uint8_t* any_hit_calls, IntersectionCounts& counts) {
+                              std::vector<AnyHitCall>* any_hit_calls, IntersectionCounts& counts) {
   IntersectionCounts own;
   const WholeRay whole(record);
   FrameStorage<Slab> frame;
   enter_frame(accel, key.instance, record, &frame.ray, own);
   own.transforms = own.transforms_in_double = 0;  // counted with the boxes
+  frame.ray.calls = any_hit_calls;
   test_direct(accel, node, lanes, frame.ray, record.hit, own);
   settle(record);
-  if (any_hit_calls != nullptr)
-    *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, own.any_hit_calls));
   counts += own;
 }
 
@@ -96,9 +95,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
     }
     if (HWY_UNLIKELY(quantised) && mask != 0)
       count_extra_hits(accel, key.ref, in_registers(ray), record.hit.t, mask, counts);
-    if (HWY_UNLIKELY(direct != 0))
-      test_direct<Slab>(accel, node, key, direct, record,
-                        members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i, counts);
+    if (HWY_UNLIKELY(direct != 0)) test_direct<Slab>(accel, node, key, direct, record, members.any_hit_calls, counts);
     hits.masks[i] = static_cast<std::uint8_t>(mask);
     if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
   }
@@ -140,13 +137,11 @@ void test_triangles(const Accel& accel, NodeKey key, std::uint32_t lanes, const 
     if constexpr (kMember)
       if (misses_member<Slab>(accel, key.instance, record, counts)) continue;
     tests += tested;
-    const std::uint64_t any_hit_calls = counts.any_hit_calls;
     const WholeRay whole(record);
     FrameStorage<Slab> frame;
     enter_frame(accel, key.instance, record, &frame.ray, counts);
+    frame.ray.calls = members.any_hit_calls;
     test_leaf(accel, key.ref, lanes, frame.ray, record.hit);
-    if (members.any_hit_calls != nullptr)
-      members.any_hit_calls[i] = static_cast<std::uint8_t>(counts.any_hit_calls - any_hit_calls);  // 32 at most
     settle(record);
   }
 }

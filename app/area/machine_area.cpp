@@ -55,14 +55,16 @@ double program_kib(const Config& c) {
   return unit * static_cast<double>(ray_owners(c.topology) * own_testers(c)) / kKiB;
 }
 
-/// The registers and the instruction cache of all shader workers, and the store of their programs (KiB). Without a
+/// The registers, the caches and the TLBs of all shader workers, and the store of their programs (KiB). Without a
 /// cache each worker has a store of its own.
 double shader_program_kib(const Config& c) {
   constexpr double kRegisterBytes = 4;
   const auto workers = static_cast<double>(shader_workers(c));
-  const auto store = static_cast<double>(shade_programs(c.shading, c.programs).store_bytes);
+  const auto store = static_cast<double>(shade_programs(c.shading, c.programs, c.testers).store_bytes);
   const auto cache = static_cast<double>(c.shading.instruction_cache.bytes);
-  const double each = kRegisterBytes * static_cast<double>(c.shading.registers) + (cache > 0 ? cache : store);
+  const std::int64_t pages = c.shading.translation.page_bytes > 0 ? c.shading.translation.entries : 0;
+  const double each = kRegisterBytes * static_cast<double>(c.shading.registers) + (cache > 0 ? cache : store) +
+                      static_cast<double>(c.shading.data_cache.bytes + kTlbEntryBytes * pages);
   return (workers * each + (cache > 0 ? store : 0)) / kKiB;
 }
 

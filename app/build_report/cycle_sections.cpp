@@ -24,8 +24,9 @@ report::Rate rate(double rays, std::uint64_t cycles, std::int64_t clock_mhz) {
 }
 
 report::ShaderPrograms shader_programs(const ShadingCounts& counts, const Config& config) {
-  const ShadePrograms programs = shade_programs(config.shading, config.programs);
+  const ShadePrograms programs = shade_programs(config.shading, config.programs, config.testers);
   const ShadeProgramCounts& of = counts.programs;
+  const bool cached = config.shading.data_cache.bytes > 0 || config.shading.translation.page_bytes > 0;
   const std::uint64_t held = vectors_held(config.shading, programs);
   return {of,
           programs.registers,
@@ -33,7 +34,8 @@ report::ShaderPrograms shader_programs(const ShadingCounts& counts, const Config
           programs.store_bytes,
           ratio(of.vector_cycles, counts.busy * held),
           ratio(of.lane_instructions(), of.issued * static_cast<std::uint64_t>(config.shading.lanes)),
-          ratio(of.issued, counts.busy)};
+          ratio(of.issued, counts.busy),
+          cached ? std::optional(counts.data) : std::nullopt};
 }
 
 report::UnitCycles unit_cycles(const ringbus::cycle::BankUse& use, const ringbus::cycle::TileResult& tile) {

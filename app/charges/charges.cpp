@@ -26,6 +26,8 @@ constexpr std::array kCharges{
     Charge{"film", "light is added to the picture for nothing", "memory.film", "free", "memory"},
     Charge{"sky_map", "texels and tables of the sky's map are where shading needs them", "memory.sky_map", "free",
            "memory"},
+    Charge{"surfaces", "materials, vertices and texels are where shading needs them", "memory.surfaces", "free",
+           "memory"},
     Charge{"ray_records", "rays have no master copies in memory", "memory.ray_records", "resource", "master"},
     Charge{"products", "products of surfaces' effects take no time", "shading.products_per_cycle", "0", "8"},
     Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
@@ -87,7 +89,9 @@ LocatedConfig load_charged(const ConfigText& text, const std::vector<std::string
                            const ValidateOptions& options) {
   LocatedConfig out = load_config(text, sets, options);
   std::vector<std::string> charged;
-  for (const Charge* charge : uncharged(out, {})) {
+  SceneFacts scene;
+  scene.gaussians = out.config.scene.builtin == BuiltinScene::kGaussians;  // those of a file are not known yet
+  for (const Charge* charge : uncharged(out, scene)) {
     if (*charge->key == 0) continue;
     std::vector<std::string> more = charged;
     more.push_back(std::string(charge->key) + "=" + charge->charged);

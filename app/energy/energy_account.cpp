@@ -58,9 +58,10 @@ EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<B
       buffer_kib_(mean(config, [](const OwnSections& one) { return one.memory.shape_buffer_kib; })),
       l1_kib_(mean(config, [](const OwnSections& one) { return one.memory.l1_kib; })),
       l2_kib_(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks)),
-      programs_kib_(config.shading.program.any()
-                        ? static_cast<double>(shade_programs(config.shading, config.programs).store_bytes) / 1024
-                        : 0) {}
+      programs_kib_(
+          config.shading.program.any()
+              ? static_cast<double>(shade_programs(config.shading, config.programs, config.testers).store_bytes) / 1024
+              : 0) {}
 
 /// Adds up the energy of some events.
 class EnergyAccount::Sum {
@@ -78,7 +79,7 @@ class EnergyAccount::Sum {
     }
     for (std::size_t i = 0; i < e_.row_bytes.size(); ++i) message(a_.rows_[i], static_cast<double>(e_.row_bytes[i]));
     if (a_.c_.shading.program.any())
-      shader_instructions(e_.programs);
+      shader_instructions(e_.programs, e_.shade_data);
     else
       parts_[EnergyPart::kShades].add(static_cast<double>(e_.shaded), pj(Cost::kShade));
     divisions(static_cast<double>(e_.shaded));  // each ray that is shaded has been made once
@@ -99,7 +100,9 @@ class EnergyAccount::Sum {
   void resource(const ringbus::EnergyEvents::OfResource& of, std::int64_t number) {
     for (const UnitKindRow& row : kUnitKinds) {
       // The energy of a test by a program is that of its instructions.
-      const std::uint64_t by_program = row.kind == UnitKind::kProcedural ? of.tests.programs : 0;
+      std::uint64_t by_program = row.kind == UnitKind::kProcedural ? of.tests.programs : 0;
+      if (row.kind == UnitKind::kAnyHit && runs_any_hit_programs(a_.c_.shading, a_.c_.testers))
+        by_program = of.tests.any_hit_calls;
       const std::uint64_t by_silhouette = row.kind == UnitKind::kBundle ? of.tests.silhouettes : 0;
       parts_.units[row.kind].add(static_cast<double>(of.tests.*row.tests - by_program - by_silhouette),
                                  pj(energy_of(row.kind)));
@@ -137,7 +140,7 @@ class EnergyAccount::Sum {
 
   /// In place of a constant for a ray that is shaded. To read is to issue: the caches are charged for the lines,
   /// and the store of programs for those that an instruction cache did not have.
-  void shader_instructions(const ShadeProgramCounts& counts) {
+  void shader_instructions(const ShadeProgramCounts& counts, const ShadeDataCounts& data) {
     const auto add = [&](EnergyPart part, std::uint64_t executed, Cost each) {
       parts_[part].add(static_cast<double>(executed), pj(each));
     };
@@ -147,6 +150,15 @@ class EnergyAccount::Sum {
     add(EnergyPart::kShades, counts.branch, Cost::kBranchInstruction);
     add(EnergyPart::kLookups, counts.texture, Cost::kLookup);
     access(EnergyPart::kShades, static_cast<double>(counts.instruction_bytes), a_.programs_kib_);
+    const DataCacheConfig& cache = a_.c_.shading.data_cache;
+    const auto line = static_cast<double>(cache.line_bytes.value_or(a_.c_.memory.line_bytes));
+    // A line is read when it is there and written when it comes, and its lookup reads a tag; a page is one word.
+    if (data.lines > 0)
+      access(EnergyPart::kShades, line * static_cast<double>(data.lines) + kWord * static_cast<double>(data.lines),
+             static_cast<double>(cache.bytes) / 1024);
+    if (data.pages > 0)
+      access(EnergyPart::kShades, kWord * static_cast<double>(data.pages + data.walks),
+             static_cast<double>(a_.c_.shading.translation.entries * kTlbEntryBytes) / 1024);
   }
 
   void caches() {
@@ -234,7 +246,10 @@ ringbus::EnergyEvents energy_events(const report::Report& r) {
   out.shaded = r.shading.shaded;
   out.products = r.shading.products.value_or(0);
   out.lookups = r.shading.lookups.value_or(0);
-  if (r.shading.programs) out.programs = r.shading.programs->counts;
+  if (r.shading.programs) {
+    out.programs = r.shading.programs->counts;
+    if (r.shading.programs->data) out.shade_data = *r.shading.programs->data;
+  }
   if (r.memory->dram)
     for (const report::DramChannel& channel : r.memory->dram->channels)
       out.activations += channel.counts.row_misses + channel.counts.row_conflicts;

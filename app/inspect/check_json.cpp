@@ -44,6 +44,7 @@ Json memory_json(const MemoryNeed& need) {
             {"collections", need.ring.collections},
             {"packets", need.ring.packets},
             {"waiting_rays", need.ring.rays_waiting},
+            {"worker_caches", need.ring.worker_caches},
             {"paths", need.paths},
             {"film", need.film},
             {"hits", need.hits}}}};

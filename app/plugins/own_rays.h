@@ -30,6 +30,7 @@ class OwnRays final : public Workload {
   ShadeWork extra_work(const RayResult& result) const override { return inner_->extra_work(result); }
   std::uint32_t shader(const RayResult& result) const override { return inner_->shader(result); }
   ShadeFacts shade_facts(const RayResult& result) const override { return inner_->shade_facts(result); }
+  ShadeFacts any_hit_facts(const RayResult& call) const override { return inner_->any_hit_facts(call); }
   PathMemory path_memory(const RayTag& tag) const override { return inner_->path_memory(tag); }
 
   // The results below are valid once the workers are joined.

@@ -32,6 +32,7 @@ class PilotWorkload final : public Workload {
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   std::uint32_t shader(const RayResult& result) const override { return job_.workload().shader(result); }
   ShadeFacts shade_facts(const RayResult& result) const override { return job_.workload().shade_facts(result); }
+  ShadeFacts any_hit_facts(const RayResult& call) const override { return job_.workload().any_hit_facts(call); }
   void sky_reads(const RayResult& result, std::vector<SkyRead>& out) const override {
     job_.workload().sky_reads(result, out);
   }

@@ -102,7 +102,7 @@ MemoryNeed estimate(const Config& config, bool keep_hits, const scene::Scene& sc
 std::string memory_text(const MemoryNeed& need, std::uint64_t usable_bytes) {
   std::string out =
       fmt::format("memory: about {} of {}\n", report::bytes_text(need.total()), report::bytes_text(usable_bytes));
-  const std::array<std::pair<const char*, std::uint64_t>, 9> parts{{
+  const std::array<std::pair<const char*, std::uint64_t>, 10> parts{{
       {"scene", need.scene},
       {"acceleration structure", need.accel},
       {"rays", need.ring.ray_store},
@@ -110,6 +110,7 @@ std::string memory_text(const MemoryNeed& need, std::uint64_t usable_bytes) {
       {"collections, if full", need.ring.collections},
       {"packets", need.ring.packets},
       {"waiting rays", need.ring.rays_waiting},
+      {"caches of workers", need.ring.worker_caches},
       {"paths and film", need.paths + need.film},
       {"rows of hits", need.hits},
   }};
@@ -120,10 +121,11 @@ std::string memory_text(const MemoryNeed& need, std::uint64_t usable_bytes) {
 
 void require_fit(const MemoryNeed& need, std::uint64_t usable_bytes, const KeyPositions& positions) {
   if (usable_bytes == 0 || need.total() <= usable_bytes) return;
-  const std::array<std::pair<const char*, std::uint64_t>, 4> keys{{
+  const std::array<std::pair<const char*, std::uint64_t>, 5> keys{{
       {"scene", need.scene + need.accel},
       {"rays.slots_per_resource", need.ring.ray_store + need.ring.ray_stacks + need.ring.rays_waiting + need.paths},
       {"collections.capacity", need.ring.collections},
+      {"shading.workers", need.ring.worker_caches},
       {"image", need.film + need.hits},
   }};
   const auto most =

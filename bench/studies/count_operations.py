@@ -9,7 +9,8 @@ Counted are operations on floating point numbers, and products of integers (rand
 out, since most are addresses. Sine, power and such are functions of our own and counted as they run.
 
 What follows from lights and from a bounce ray is told apart by runs without them: with one surface a path there are no
-bounce rays, and with the sky as the only light no shadow rays.
+bounce rays, and with the sky as the only light no shadow rays. An any-hit call does without its lookup, which is a
+texture instruction.
 """
 import collections
 import ctypes
@@ -124,7 +125,7 @@ class Stepper:
 
 def entries_of(carousel, function):
     text = subprocess.run(["nm", "-C", carousel], capture_output=True, text=True, check=True).stdout
-    return [int(line.split()[0], 16) for line in text.splitlines() if re.search(r"PathTracer::" + function + r"\b", line)
+    return [int(line.split()[0], 16) for line in text.splitlines() if re.search(r"\b" + function + r"\b", line)
             and line.split()[1] in "TtWw" and "(*" not in line and "::*" not in line]
 
 
@@ -151,14 +152,17 @@ def main():
             "image": {"width": 4, "height": 3, "samples": 1, "max_depth": 4, "seed": 1}}
     once = dict(base, image=dict(base["image"], max_depth=1))
     dark = dict(base, shading={"effects": ["reflection", "mirror", "sky", "bounce_rays"]})
+    leaves = dict(base, scene={"builtin": "foliage", "triangles": 600})
     for name, config, function, rays in (
             ("miss", base, "shade_miss", None), ("shadow", base, "shade_shadow", None),
             ("camera", base, "generate", lambda rays: rays["by_kind"]["camera"]),
             ("surface", base, "shade_surface", None), ("light alone", once, "shade_surface", None),
-            ("bounce alone", dark, "shade_surface", None)):
+            ("bounce alone", dark, "shade_surface", None),
+            ("any hit", leaves, "AlphaTest::accepts", None), ("its lookup", leaves, "shading::lookup_alpha", None)):
         if sys.argv[2:] and name not in sys.argv[2:]:
             continue
-        counts, calls, report = run(carousel, config, function, of)
+        name_of = function if "::" in function else "PathTracer::" + function
+        counts, calls, report = run(carousel, config, name_of, of)
         number = rays(report["rays"]) if rays else calls
         print(f"{name:14}", *(f"{kind} {counts[kind] / number:7.1f} " for kind in ("simple", "product", "divide")),
               f" {number} rays", {key: sum(one[key] for one in report["rays"]["by_bounce"])

@@ -269,6 +269,10 @@ inline constexpr Condition kConstantShading{[](const C& c, const S&) { return !c
                                             "shading takes the time of its programs"};
 inline constexpr Condition kInstructionCache{[](const C& c, const S&) { return c.shading.instruction_cache.bytes > 0; },
                                              "there is no instruction cache"};
+inline constexpr Condition kDataCache{[](const C& c, const S&) { return c.shading.data_cache.bytes > 0; },
+                                      "shader workers have no data caches"};
+inline constexpr Condition kPages{[](const C& c, const S&) { return c.shading.translation.page_bytes > 0; },
+                                  "addresses are physical"};
 inline constexpr Condition kRunsPrograms{
     [](const C& c, const S& s) { return !c.scene.objects.empty() || kShaderPrograms.holds(c, s); },
     "scene.objects has none, and shader workers run no program"};
@@ -281,6 +285,8 @@ inline constexpr Condition kPackedLeaves{
 inline constexpr Condition kAnyHitShaders{
     [](const C& c, const S& s) { return s.any_hit && c.testers.any_hit == TestersConfig::AnyHit::kShader; },
     "no shader worker decides any-hit calls"};
+inline constexpr Condition kConstantAnyHit{[](const C& c, const S&) { return !c.shading.program.any_hit(); },
+                                           "any-hit calls take the time of their program"};
 inline constexpr Condition kMicromaps{[](const C& c, const S& s) { return s.any_hit && has_micromaps(c); },
                                       "there are no opacity micromaps"};
 inline constexpr Condition kVectors{[](const C& c, const S&) { return any_testers(c, has_many_lanes); },

@@ -22,17 +22,24 @@ OpLatencies latencies_of(const ProgramsConfig& programs) {
 std::optional<RayProgram> shader_of(const std::string& name, std::size_t kind, const ProgramsConfig& programs,
                                     ProgramFault& fault) {
   const OpLatencies latencies = latencies_of(programs);
-  if (name == ShaderProgramsConfig::kBuiltIn)
-    return compile_program(built_in_shader(kind), {}, latencies, fault, kShaderUse);
+  const ProgramUse& use = kind == kAnyHitKind ? kAnyHitUse : kShaderUse;
+  if (name == ShaderProgramsConfig::kBuiltIn) return compile_program(built_in_shader(kind), {}, latencies, fault, use);
   const ShaderConfig& own = programs.shaders.named.at(name);
-  return compile_program(own.program, own.parameters.values, latencies, fault, kShaderUse);
+  return compile_program(own.program, own.parameters.values, latencies, fault, use);
 }
 
-ShadePrograms shade_programs(const ShadingConfig& shading, const ProgramsConfig& programs) {
+bool runs_any_hit_programs(const ShadingConfig& shading, const TestersConfig& testers) {
+  return shading.program.any_hit() && testers.any_hit == TestersConfig::AnyHit::kShader;
+}
+
+ShadePrograms shade_programs(const ShadingConfig& shading, const ProgramsConfig& programs,
+                             const TestersConfig& testers) {
   ShadePrograms out;
+  out.any_hit = runs_any_hit_programs(shading, testers);
   std::map<std::pair<std::string, std::size_t>, std::uint32_t> made;
   const auto line = static_cast<std::uint64_t>(shading.instruction_cache.line_bytes);
   for (std::size_t kind = 0; kind < kShaderKinds; ++kind) {
+    if (kind == kAnyHitKind && !out.any_hit) continue;
     const std::string& name = shading.program.of(kind);
     const bool built_in = name == ShaderProgramsConfig::kBuiltIn;
     const auto [at, fresh] =

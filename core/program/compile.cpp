@@ -142,6 +142,10 @@ class Compiler {
     if (words.empty()) fail(0, "expected an instruction, found an empty text");
     const auto row = std::ranges::find(kOpRows, words[0].text, &OpRow::name);
     if (row == kOpRows.end() || !belongs(*row, use_)) unknown(words[0]);
+    if (row->op == Op::kTrace && !use_.traces)
+      fail(words[0].column,
+           "an any-hit call sends no rays; expected another instruction, or another program for "
+           "shading.program.any_hit, found trace");
     const std::size_t given = words.size() - 1;
     if (given != row->operands && !(may_have_one(row->form) && given == 1))
       fail(words[0].column, fmt::format("expected {} operands of {}{}, found {}", row->operands, row->name,

@@ -72,9 +72,11 @@ inline constexpr std::array<std::string_view, 8> kProgramInputs{"ox", "oy", "oz"
 /// The purpose of a program: the registers that it finds filled, and the instructions that it may have.
 struct ProgramUse {
   std::span<const std::string_view> inputs;
-  bool shades;  ///< of a shader worker; otherwise it finds the hits of a primitive
+  bool shades;         ///< of a shader worker; otherwise it finds the hits of a primitive
+  bool traces = true;  ///< may send rays, if it shades
 };
-inline constexpr ProgramUse kPrimitiveUse{kProgramInputs, false}, kShaderUse{kShadeFactNames, true};
+inline constexpr ProgramUse kPrimitiveUse{kProgramInputs, false}, kShaderUse{kShadeFactNames, true},
+    kAnyHitUse{kShadeFactNames, true, false};
 
 /// A compiled program: a flat list of instructions, which ends behind its last one. Every loop has a bound, every
 /// register is set before it is read, and no test takes more than kMostSteps.

@@ -16,6 +16,7 @@ struct ShadePrograms {
   std::vector<RayProgram> programs;
   std::vector<std::uint64_t> address;  ///< by program: of its first instruction (bytes)
   std::array<std::uint32_t, kShaderKinds> of_kind{};
+  bool any_hit = false;           ///< of_kind has a program for any-hit calls, which otherwise take a constant time
   std::size_t registers = 1;      ///< of the program that has most
   std::uint64_t store_bytes = 0;  ///< of all instructions
 };

@@ -36,10 +36,10 @@ struct TransformedRayBytes {
 };
 
 /// Data of rays and paths that ray control and shading have read from memory and written to it (`memory.ray_records`,
-/// `path_state`, `film`, `sky_map`, `shading.program`).
+/// `path_state`, `film`, `sky_map`, `surfaces`, `shading.program`).
 struct RayDataBytes {
   std::uint64_t records_read = 0, records_written = 0, states_read = 0, states_written = 0, film_read = 0,
-                film_written = 0, sky_read = 0, materials_read = 0, vertices_read = 0, texels_read = 0;
+                film_written = 0, sky_read = 0, materials_read = 0, vertices_read = 0, texels_read = 0, pages_read = 0;
 
   static constexpr auto counters() {
     using C = RayDataBytes;
@@ -53,9 +53,10 @@ struct RayDataBytes {
         Counter{"film_written", &C::film_written, "bytes", "pixels written"},
         Counter{"sky_read", &C::sky_read, "bytes",
                 "texels and tables of the map of the sky read before rays were shaded"},
-        Counter{"materials_read", &C::materials_read, "bytes", "materials read by programs of shader workers"},
+        Counter{"materials_read", &C::materials_read, "bytes", "materials read by shader workers"},
         Counter{"vertices_read", &C::vertices_read, "bytes", "vertices of triangles read likewise"},
         Counter{"texels_read", &C::texels_read, "bytes", "texels of textures read likewise"},
+        Counter{"pages_read", &C::pages_read, "bytes", "entries of the page table read by walkers"},
     };
   }
   friend bool operator==(const RayDataBytes&, const RayDataBytes&) = default;

@@ -27,7 +27,7 @@ struct ShadeProgramCounts {
   std::uint64_t operand_stalls = 0, branch_stalls = 0, trace_stalls = 0, memory_stalls = 0, instruction_stalls = 0,
                 issue_stalls = 0;
   std::uint64_t simple = 0, product = 0, divide = 0, branch = 0, read = 0, texture = 0, trace = 0;
-  std::uint64_t data_reads = 0, instruction_misses = 0, instruction_bytes = 0;
+  std::uint64_t data_reads = 0, instruction_misses = 0, instruction_bytes = 0, any_hit_calls = 0;
 
   static constexpr auto counters() {
     using C = ShadeProgramCounts;
@@ -57,6 +57,7 @@ struct ShadeProgramCounts {
                 "instruction"},
         Counter{"instruction_misses", &C::instruction_misses, "misses", "lines that instruction caches did not have"},
         Counter{"instruction_bytes", &C::instruction_bytes, "bytes", "bytes of these lines"},
+        Counter{"any_hit_calls", &C::any_hit_calls, "calls", "any-hit calls that ran a program"},
     };
   }
   constexpr std::uint64_t stalls() const {
@@ -69,6 +70,26 @@ struct ShadeProgramCounts {
   friend bool operator==(const ShadeProgramCounts&, const ShadeProgramCounts&) = default;
 };
 
+/// What data caches and TLBs of shader workers did.
+struct ShadeDataCounts {
+  std::uint64_t lines = 0, hits = 0, misses = 0, pages = 0, page_misses = 0, walks = 0, walk_reads = 0;
+
+  static constexpr auto counters() {
+    using C = ShadeDataCounts;
+    return std::array{
+        Counter{"lines", &C::lines, "lines", "lines that were looked up in data caches"},
+        Counter{"hits", &C::hits, "lines", "lines of these that were there"},
+        Counter{"misses", &C::misses, "lines",
+                "lines that were then read from memory; the rest were under way already"},
+        Counter{"pages", &C::pages, "lines", "lines whose pages were looked up in TLBs"},
+        Counter{"page_misses", &C::page_misses, "lines", "lines of these whose pages were not there"},
+        Counter{"walks", &C::walks, "pages", "pages for which walkers began to read the page table"},
+        Counter{"walk_reads", &C::walk_reads, "entries", "entries that they read, one a level"},
+    };
+  }
+  friend bool operator==(const ShadeDataCounts&, const ShadeDataCounts&) = default;
+};
+
 /// The work of shader workers.
 struct ShadingCounts {
   std::uint64_t busy = 0;      ///< worker-cycles, without resources that help
@@ -76,6 +97,7 @@ struct ShadingCounts {
   std::uint64_t lookups = 0;
   ShadeVectorCounts vectors;
   ShadeProgramCounts programs;
+  ShadeDataCounts data;
   friend bool operator==(const ShadingCounts&, const ShadingCounts&) = default;
 };
 

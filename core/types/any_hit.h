@@ -19,4 +19,10 @@ class AnyHit {
   virtual bool accepts(const Ray& ray, std::uint32_t instance, std::uint32_t primitive, float u, float v) const = 0;
 };
 
+/// An any-hit call: the ray, and the place in front of its closest hit so far at which it met the primitive.
+struct AnyHitCall {
+  const RayRecord* record;
+  Hit place;
+};
+
 }  // namespace carousel

@@ -83,6 +83,9 @@ class Workload {
     return facts;
   }
 
+  /// What a program finds of an any-hit call. `call` is the ray, with the place of the call for its hit.
+  virtual ShadeFacts any_hit_facts(const RayResult& call) const { return shade_facts(call); }
+
   /// The places in memory of the path of a ray in flight.
   virtual PathMemory path_memory(const RayTag& /*tag*/) const { return {}; }
 

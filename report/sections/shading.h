@@ -143,6 +143,7 @@ struct ShaderPrograms {
   ShadeProgramCounts counts;
   std::uint64_t registers = 0, vectors_held = 0, store_bytes = 0;
   std::optional<double> occupancy{}, lane_fill{}, issue_rate{};
+  std::optional<ShadeDataCounts> data{};
 };
 
 template <class V>
@@ -156,6 +157,7 @@ void describe(V& v, const ShaderPrograms& r) {
   v.field("issue_rate", r.issue_rate, "instructions/cycle",
           "instructions that a worker issued in its mean working cycle");
   describe(v, r.counts);
+  v.section("data", r.data, "data caches and TLBs of the workers, with shading.data_cache or shading.translation");
 }
 
 struct Shading {

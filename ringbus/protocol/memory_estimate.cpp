@@ -12,6 +12,23 @@
 
 namespace carousel::ringbus {
 
+namespace {
+
+std::uint64_t worker_caches(const Config& config) {
+  const ShadingConfig& shading = config.shading;
+  if (!shading.program.any() || config.engine.kind != EngineKind::kCycle) return 0;
+  constexpr std::int64_t kInstructionLine = 16, kName = 8, kSet = 24;
+  const std::int64_t line = shading.data_cache.line_bytes.value_or(config.memory.line_bytes);
+  const std::int64_t lines = shading.data_cache.bytes / line, sets = lines / shading.data_cache.ways;
+  const std::int64_t pages = shading.translation.page_bytes > 0 ? shading.translation.entries : 0;
+  const InstructionCacheConfig& instructions = shading.instruction_cache;
+  return static_cast<std::uint64_t>(
+      shader_workers(config) *
+      (instructions.bytes / instructions.line_bytes * kInstructionLine + (lines + pages) * kName + sets * kSet));
+}
+
+}  // namespace
+
 MemoryEstimate estimate_memory(const Config& config, int max_depth, bool gaussians) {
   const auto u = [](std::int64_t x) { return static_cast<std::uint64_t>(x); };
   const std::uint64_t resources = u(config.topology.resources), slots = u(all_slots(config));
@@ -39,6 +56,7 @@ MemoryEstimate estimate_memory(const Config& config, int max_depth, bool gaussia
   }
   // A completed ray may cause two, and both wait while slots are taken.
   e.rays_waiting = slots * (2 * sizeof(RayRequest) + sizeof(RayResult));
+  e.worker_caches = worker_caches(config);
   if (!topology.has_packets()) return e;
   // An ID, and a block's share of a collection, its place in the table and its list links.
   const std::uint64_t block = u(block_rays(config.collections, config.packets));

@@ -16,7 +16,9 @@ struct MemoryEstimate {
   std::uint64_t packets = 0;
   std::uint64_t rays_waiting = 0;  ///< new rays not yet in slots, completed ones not yet shaded
 
-  std::uint64_t total() const { return ray_store + ray_stacks + collections + packets + rays_waiting; }
+  std::uint64_t worker_caches = 0;  ///< names of what caches and TLBs of shader workers hold
+
+  std::uint64_t total() const { return ray_store + ray_stacks + collections + packets + rays_waiting + worker_caches; }
 };
 
 /// `max_depth` is that of the structure (Accel::max_depth). Rays blend `gaussians` and do not keep what they have met.

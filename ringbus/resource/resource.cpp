@@ -90,6 +90,7 @@ TestOutcome Resource::test(Packet& packet) {
   if (members > 0) traversal_->test(packet, local_, outcome);
   if (members > 0) outcome.counts.decoded += decoded_blocks(packet, outcome);
   outcome.rays = local_.size();
+  outcome.any_hit_slots = any_hit_.slots();
   outcome.any_hit_calls = any_hit_.calls();
   record({.kind = EventKind::kTest,
           .resource = id(),

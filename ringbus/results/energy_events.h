@@ -30,7 +30,8 @@ struct EnergyEvents {
   std::uint64_t l2_lines = 0, asked_ahead = 0, l1_lines = 0;
   PartCounts<Parts> parts;
   std::uint64_t shaded = 0, products = 0, lookups = 0;
-  ShadeProgramCounts programs;    ///< of shader workers
+  ShadeProgramCounts programs;  ///< of shader workers, as the next one
+  ShadeDataCounts shade_data;
   std::uint64_t activations = 0;  ///< of rows of DRAM with banks
 };
 

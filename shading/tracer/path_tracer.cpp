@@ -139,13 +139,25 @@ ShadeFacts PathTracer::shade_facts(const RayResult& result) const {
   facts[ShadeFact::kLookups] = static_cast<float>(work.lookups);
   facts[ShadeFact::kProducts] = static_cast<float>(work.products);
   const Hit& hit = result.hit;
-  if (!hit.valid()) return facts;
+  if (!hit.valid() || !scene_.gaussians.empty()) return facts;
   const TrianglePoint point = triangle_point(scene_, hit.instance, hit.primitive, hit.u, hit.v);
   facts[ShadeFact::kEmissive] = is_emissive(*point.material) ? 1.0f : 0.0f;
   facts[ShadeFact::kAlpha] = static_cast<float>(point.material->alpha_mode);
   // A shadow ray looks at no surface but a pane.
   const Surface& surface = surfaces_[static_cast<std::size_t>(point.material - scene_.materials.data())];
   if (result.tag.kind != RayKind::kShadow || surface.pane) tables_.reads(hit, point, facts);
+  return facts;
+}
+
+/// What AlphaTest does: it looks up the base colour's texture for its alpha.
+ShadeFacts PathTracer::any_hit_facts(const RayResult& call) const {
+  ShadeFacts facts = Workload::shade_facts(call);
+  const Hit& at = call.hit;
+  const TrianglePoint point = triangle_point(scene_, at.instance, at.primitive, at.u, at.v);
+  const scene::Material& material = *point.material;
+  facts[ShadeFact::kAlpha] = static_cast<float>(material.alpha_mode);
+  tables_.opacity_reads(at, point, facts);
+  facts[ShadeFact::kLookups] = static_cast<float>(facts.lookups.size());
   return facts;
 }
 

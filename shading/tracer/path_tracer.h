@@ -66,6 +66,7 @@ class PathTracer : public Workload {
   std::uint32_t shader(const RayResult& result) const override;
   void sky_reads(const RayResult& result, std::vector<SkyRead>& out) const override;
   ShadeFacts shade_facts(const RayResult& result) const override;
+  ShadeFacts any_hit_facts(const RayResult& call) const override;
   PathMemory path_memory(const RayTag& tag) const override {
     return {plan_.path_state_bytes(), pool_.state(tag.path).pixel};
   }

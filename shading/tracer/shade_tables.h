@@ -10,7 +10,7 @@
 
 namespace carousel::shading {
 
-/// Where materials, vertices and texels lie that programs of simulated shader workers read: one table of each, all
+/// Where materials, vertices and texels lie that simulated shader workers read: one table of each, all
 /// meshes or images one after another. A material has 128 bytes. A vertex has 32, its position, normal and coordinates;
 /// a texel 4. Spheres have no vertices.
 class ShadeTables {
@@ -19,8 +19,13 @@ class ShadeTables {
   explicit ShadeTables(const scene::Scene& scene);
   /// Sets what shading the hit reads.
   void reads(const Hit& hit, const TrianglePoint& point, ShadeFacts& facts) const;
+  /// The same of an any-hit call.
+  void opacity_reads(const Hit& hit, const TrianglePoint& point, ShadeFacts& facts) const;
 
  private:
+  void geometry_reads(const Hit& hit, const TrianglePoint& point, ShadeFacts& facts) const;
+  void lookup(const TrianglePoint& point, const scene::TextureUse& use, ShadeFacts& facts) const;
+
   const scene::Scene& scene_;
   std::vector<std::uint64_t> mesh_at_, image_at_;  // bytes
 };

@@ -134,9 +134,7 @@ class RecordedWorkload final : public WrappedWorkload {
       for (const SkyRead& read : reads) ray["sky"].push_back({read.offset, read.bytes});
       const ShadeFacts seen = inner_.shade_facts(result);
       ray["facts"] = seen.value;
-      ray["reads"] = {{"material", json(seen.material)}, {"vertices", json(seen.vertices)}};
-      ray["reads"]["lookups"] = Json::array();
-      for (const std::vector<DataRead>& lookup : seen.lookups) ray["reads"]["lookups"].push_back(json(lookup));
+      ray["reads"] = reads_of(seen);
       ray["children"] = Json::array();
       const std::size_t before = out.size();
       inner_.shade(worker, {result}, out);
@@ -167,7 +165,8 @@ class RecordedWorkload final : public WrappedWorkload {
              {"range", number(fresh.hit.t)},
              {"boxes", Json::object()},
              {"triangles", Json::object()},
-             {"candidates", Json::object()}};
+             {"candidates", Json::object()},
+             {"calls", Json::object()}};
     meet(tree_.accel().root_key(), fresh, ray);
     rays_.emplace(name(request.tag), std::move(ray));
   }
@@ -175,15 +174,18 @@ class RecordedWorkload final : public WrappedWorkload {
     const std::string number = std::to_string(tree_.number_of(key));
     IntersectionCounts ignored;
     if (!key.ref.is_inner()) {
-      Json distances = Json::array(), candidates = Json::array();
+      Json distances = Json::array(), candidates = Json::array(), calls = Json::array();
       for (std::uint32_t i = 0; i < key.ref.triangles(); ++i) {
         RayRecord record = fresh;
-        accel::test_strip(tree_.accel(), key, 1u << i, {&record, nullptr, 1}, {}, ignored);
+        std::vector<AnyHitCall> made;
+        accel::test_strip(tree_.accel(), key, 1u << i, {&record, nullptr, 1, nullptr, &made}, {}, ignored);
         distances.push_back(record.hit.valid() ? Json(record.hit.t) : Json());
+        calls.push_back(made.empty() ? Json() : call(fresh, made[0].place));
         candidates.push_back(candidate(key, i, fresh));
       }
       ray["triangles"][number] = distances;
       ray["candidates"][number] = candidates;
+      ray["calls"][number] = calls;
       return;
     }
     RayRecord record = fresh;
@@ -197,6 +199,18 @@ class RecordedWorkload final : public WrappedWorkload {
       if (mask >> lane & 1) meet(tree_.accel().child_key(key, lane), fresh, ray);
     }
     ray["boxes"][number] = entries;
+  }
+
+  /// An any-hit call, as its program finds it.
+  Json call(const RayRecord& fresh, const Hit& place) const {
+    const ShadeFacts seen = inner_.any_hit_facts({fresh.ray, place, fresh.tag});
+    Json out{{"t", place.t}, {"facts", seen.value}, {"reads", reads_of(seen)}};
+    return out;
+  }
+  static Json reads_of(const ShadeFacts& seen) {
+    Json out{{"material", json(seen.material)}, {"vertices", json(seen.vertices)}, {"lookups", Json::array()}};
+    for (const std::vector<DataRead>& lookup : seen.lookups) out["lookups"].push_back(json(lookup));
+    return out;
   }
 
   /// The entry into the box of a triangle that the ray meets in 32 bits, up to which its closest hit lets the distance

@@ -26,7 +26,7 @@ struct MemoryConfig {
     kFree,
     kMemory
   } path_state = ShadingData::kFree,
-    film = ShadingData::kFree, sky_map = ShadingData::kFree;
+    film = ShadingData::kFree, sky_map = ShadingData::kFree, surfaces = ShadingData::kFree;
   std::int64_t l1_kib = 0, l1_ways = 8, l1_lines_per_cycle = 1, l1_mshrs = 0, l1_latency_cycles = 20;
   DramConfig dram;
 };
@@ -130,6 +130,10 @@ void describe(V& v, MemoryConfig& c) {
   v.choice("sky_map", c.sky_map,
            "The texels of scene.sky.file that shading reads, and the tables by which it draws light from the map, are "
            "where shading needs them, or they are read from memory for each ray before that is shaded.")
+      .only(EngineKind::kCycle, "simulated memory", MemoryConfig::ShadingData::kMemory);
+  v.choice("surfaces", c.surfaces,
+           "The materials, vertices and texels that shading reads without shading.program are where shading needs "
+           "them, or they are read from memory for each ray before that is shaded.")
       .only(EngineKind::kCycle, "simulated memory", MemoryConfig::ShadingData::kMemory);
   v.field("fetch_ahead", c.fetch_ahead, IntRange{0, 64}, "packets",
           "The number of packets whose shapes are fetched in advance.")

@@ -27,12 +27,25 @@ struct ShaderProgramsConfig {
   std::array<std::string, kShaderKinds> of_kind{};
 
   bool any() const { return standard != kConstant; }
+  /// Any-hit calls that come to shader workers run a program.
+  bool any_hit() const { return any() && of(kAnyHitKind) != kConstant; }
   const std::string& of(std::size_t kind) const { return of_kind[kind].empty() ? standard : of_kind[kind]; }
 };
 
 /// The cache through which a shader worker fetches the instructions of programs.
 struct InstructionCacheConfig {
   std::int64_t bytes = 0, line_bytes = 64, miss_cycles = 40;
+};
+
+/// The cache through which programs of a shader worker read materials, vertices and texels.
+struct DataCacheConfig {
+  std::int64_t bytes = 0, ways = 4, latency_cycles = 20;
+  std::optional<std::int64_t> line_bytes;  ///< absent: that of the shared caches
+};
+
+/// How a shader worker finds the physical addresses of these data.
+struct TranslationConfig {
+  std::int64_t page_bytes = 0, entries = 32;
 };
 
 struct ShadingConfig {
@@ -46,6 +59,8 @@ struct ShadingConfig {
   ShaderProgramsConfig program;
   std::int64_t registers = 4096;
   InstructionCacheConfig instruction_cache;
+  DataCacheConfig data_cache;
+  TranslationConfig translation;
   enum class Distribute { kFifoFill, kLoad, kRoundRobin, kRandom } distribute = Distribute::kFifoFill;
   std::int64_t cycles_per_any_hit = 10, cycles_per_lookup = 5, products_per_cycle = 8;
   std::int64_t lanes = 1, sort_rays_per_cycle = 4;
@@ -87,9 +102,10 @@ void describe(V& v, ShaderProgramsConfig& c) {
           "The program of all work that no key beside this one names. A program is one of programs.shaders, or with "
           "built_in that of this program's own shading code; with constant there is none.");
   for (std::size_t kind = 0; kind < kShaderKinds; ++kind)
-    v.field(kShaderKindNames[kind], c.of_kind[kind], "",
-            "The program for this kind: rays that left the scene, shadow rays, hits by the class of their surface "
-            "(shading.classes of the report), and the making of camera rays.");
+    v.field(
+        kShaderKindNames[kind], c.of_kind[kind], "",
+        "The program for this kind: rays that left the scene, shadow rays, hits by the class of their surface "
+        "(shading.classes of the report), the making of camera rays, and any-hit calls, which alone may be constant.");
 }
 
 template <class V>
@@ -98,6 +114,29 @@ void describe(V& v, InstructionCacheConfig& c) {
           "The size of the cache of a shader worker, which is direct-mapped. With 0 all instructions are at hand.");
   v.field("line_bytes", c.line_bytes, IntRange{8, 4096}, "bytes", "The size of a line, 8 bytes an instruction.");
   v.field("miss_cycles", c.miss_cycles, kCycles, "cycles", "The time until a line is there that was not.");
+}
+
+template <class V>
+void describe(V& v, DataCacheConfig& c) {
+  v.field("bytes", c.bytes, IntRange{0, 1 << 24}, "bytes",
+          "The size of the cache of a shader worker, which looks up a line a cycle. With 0 the lines come from the "
+          "shared caches each time.")
+      .relax("shading_data_cache", Better::kTwice, Relaxed{}, c.bytes > 0);
+  v.field_or_auto("line_bytes", c.line_bytes, IntRange{16, 4096}, "bytes",
+                  "The size of a line. With auto it is memory.line_bytes.");
+  v.field("ways", c.ways, IntRange{1, 64}, "ways", "The associativity of the cache.");
+  v.field("latency_cycles", c.latency_cycles, kCycles, "cycles",
+          "The time of a hit, and that after which a line that is not there is asked for.");
+}
+
+template <class V>
+void describe(V& v, TranslationConfig& c) {
+  v.field("page_bytes", c.page_bytes, IntRange{0, 1 << 30}, "bytes",
+          "The size of a page, a power of two from 4096. With 0 addresses are physical.");
+  v.field("entries", c.entries, IntRange{1, 4096}, "entries",
+          "The pages that the TLB of a shader worker holds. For another one its walker reads the levels of the page "
+          "table through the shared caches, one after another.")
+      .relax("shading_tlb", Better::kTwice, Relaxed{}, c.page_bytes > 0);
 }
 
 template <class V>
@@ -122,13 +161,17 @@ void describe(V& v, ShadingConfig& c) {
       .relax("shading_registers", Better::kTwice, Relaxed{}, c.program.any());
   v.section("instruction_cache", c.instruction_cache,
             "What a shader worker fetches the instructions of programs through.");
+  v.section("data_cache", c.data_cache,
+            "What programs of a shader worker read materials, vertices and texels through.");
+  v.section("translation", c.translation, "How a shader worker finds where these data are.");
   v.field("cycles_per_lookup", c.cycles_per_lookup, IntRange{0, 1'000'000}, "cycles",
           "The additional time for each filtered texture lookup at a surface.");
   v.field("products_per_cycle", c.products_per_cycle, IntRange{0, 4096}, "products/cycle",
           "The products of a surface's effects that a shader worker computes in a cycle, beyond those of a plain "
           "surface. With 0 they take no time.");
   v.field("cycles_per_any_hit", c.cycles_per_any_hit, IntRange{0, 1'000'000}, "cycles",
-          "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader.");
+          "The time in which a shader worker decides if a non-opaque primitive is hit, with testers.any_hit: shader "
+          "and no program for it.");
   v.field(
        "lanes", c.lanes, IntRange{1, 64}, "rays",
        "The rays that a shader worker shades side by side as a vector. A vector takes its shaders one after another.")

@@ -245,6 +245,7 @@ void check_parts(const Config& config, const Graph& graph, const DrawnParts& par
   refuse("memory.film", memory.film != Free::kFree, "free, found memory");
   refuse("memory.sky_map", memory.sky_map != Free::kFree && config.scene.sky && !config.scene.sky->file.empty(),
          "free, found memory");
+  refuse("memory.surfaces", memory.surfaces != Free::kFree, "free, found memory");
   Parts::for_each([&]<class P>(std::size_t) {
     if (P::is_built(config.parts.of<P>()))
       breach(fmt::format("{}.{}", P::kSection, P::kSwitch),

@@ -25,6 +25,9 @@ bool loads(std::string_view instruction, std::string_view parameter) {
   return instruction.substr(before + 1, last - before) == parameter;
 }
 
+const std::string kAnyHitKey = fmt::format("shading.program.{}", kShaderKindNames[kAnyHitKind]);
+constexpr std::int64_t kLeastPage = 4096;
+
 class ProgramRules {
  public:
   ProgramRules(const Config& config, const KeyPositions& positions, std::vector<ConfigIssue>& issues)
@@ -36,7 +39,10 @@ class ProgramRules {
     if (!c_.scene.objects.empty() && c_.engine.kind == EngineKind::kCycle) one_unit_a_program();
     const std::size_t before = issues_.size();
     shaders_are_whole();
-    if (shaders_are_known() && issues_.size() == before) workers_hold_their_programs();
+    if (!shaders_are_known() || issues_.size() != before) return;
+    every_shader_is_named();
+    any_hit_calls_send_no_rays();
+    if (issues_.size() == before) workers_hold_their_programs();
   }
 
  private:
@@ -102,6 +108,7 @@ class ProgramRules {
     const std::size_t before = issues_.size();
     const auto known = [&](const std::string& key, const std::string& name) {
       if (name == ShaderProgramsConfig::kBuiltIn || c_.programs.shaders.named.contains(name)) return;
+      if (name == ShaderProgramsConfig::kConstant && key == kAnyHitKey) return;
       std::vector<std::string> names{std::string(ShaderProgramsConfig::kBuiltIn)};
       for (const auto& [own, shader] : c_.programs.shaders.named) names.push_back(own);
       const auto near = nearest_name(name, names);
@@ -122,10 +129,26 @@ class ProgramRules {
     return program.any() && issues_.size() == before;
   }
 
+  void every_shader_is_named() {
+    const ShaderProgramsConfig& program = c_.shading.program;
+    for (const auto& [name, shader] : c_.programs.shaders.named)
+      if (program.standard != name && std::ranges::find(program.of_kind, name) == program.of_kind.end())
+        issue("programs.shaders." + name, "nothing runs this program; expected a key of shading.program that names it");
+  }
+
+  /// The program of any-hit calls, which may be that of other work.
+  void any_hit_calls_send_no_rays() {
+    if (!runs_any_hit_programs(c_.shading, c_.testers)) return;
+    const std::string& name = c_.shading.program.of(kAnyHitKind);
+    ProgramFault fault;
+    if (!shader_of(name, kAnyHitKind, c_.programs, fault))
+      at_its_word("programs.shaders." + name, c_.programs.shaders.named.at(name).program, std::move(fault));
+  }
+
   /// The programs that shader workers run, all of which compile.
   void workers_hold_their_programs() {
     const ShadingConfig& shading = c_.shading;
-    const ShadePrograms programs = shade_programs(shading, c_.programs);
+    const ShadePrograms programs = shade_programs(shading, c_.programs, c_.testers);
     if (programs.registers * static_cast<std::size_t>(shading.lanes) > static_cast<std::size_t>(shading.registers))
       issue("shading.registers",
             fmt::format("the largest program has {} registers for each of {} lanes; expected {} at least, found {}",
@@ -143,6 +166,31 @@ class ProgramRules {
     else if (cache.bytes % cache.line_bytes != 0)
       issue("shading.instruction_cache.bytes",
             fmt::format("expected a multiple of line_bytes, which are {}, found {}", cache.line_bytes, cache.bytes));
+    data_cache_is_whole();
+    pages_are_whole();
+  }
+
+  void data_cache_is_whole() {
+    const DataCacheConfig& cache = c_.shading.data_cache;
+    if (cache.bytes == 0) return;
+    const std::int64_t line = cache.line_bytes.value_or(c_.memory.line_bytes);
+    if (line % c_.memory.line_bytes != 0)
+      issue(
+          "shading.data_cache.line_bytes",
+          fmt::format("expected a multiple of memory.line_bytes, which are {}, found {}", c_.memory.line_bytes, line));
+    else if (cache.bytes % (line * cache.ways) != 0)
+      issue("shading.data_cache.bytes", fmt::format("expected a multiple of the {} bytes of {} lines, found {}",
+                                                    line * cache.ways, cache.ways, cache.bytes));
+  }
+
+  void pages_are_whole() {
+    const std::int64_t page = c_.shading.translation.page_bytes, line = c_.memory.line_bytes;
+    if (page == 0) return;
+    if (page < kLeastPage || (page & (page - 1)) != 0)
+      issue("shading.translation.page_bytes",
+            fmt::format("expected 0, or a power of two from {}, found {}", kLeastPage, page));
+    else if (const std::int64_t most = c_.shading.data_cache.line_bytes.value_or(line); page % most != 0)
+      issue("shading.translation.page_bytes", fmt::format("expected whole lines of {} bytes, found {}", most, page));
   }
 
   void object_has_a_primitive(std::size_t i) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/types/workload.h"
 #include "ringbus/time/channel_list.h"
 
 namespace carousel::ringbus::cycle {
@@ -10,10 +11,10 @@ namespace carousel::ringbus::cycle {
 /// A resource asks shading, with `testers.any_hit: shader`, to run the any-hit calls of some rays.
 struct AnyHitQuestion {
   std::vector<std::uint32_t> slots;  ///< slots of the rays, which are held until the answer comes
-  std::uint64_t times = 0;           ///< calls, all rays together
+  HitBatch calls{};                  ///< of all rays: each with the place of the call for its hit
 
   /// The ID of each ray, and for each call instance, primitive, u and v.
-  std::uint64_t bytes() const { return 4 * slots.size() + 16 * times; }
+  std::uint64_t bytes() const { return 4 * slots.size() + 16 * calls.size(); }
 };
 
 /// The calls of these rays have been answered. The resource has long known the answers: only the time is simulated.

@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "ringbus/cycle/shading/programs/data_lines.h"
 #include "ringbus/results/memory_request.h"
 
 namespace carousel::ringbus::cycle {
@@ -13,9 +14,12 @@ namespace {
 // Places in the simulated memory, beyond shapes and spilled entries.
 constexpr std::uint64_t kRecords = std::uint64_t{1} << 50, kStates = std::uint64_t{1} << 51,
                         kFilm = std::uint64_t{1} << 52, kSky = kFilm + (std::uint64_t{1} << 51);
-/// The tables that programs read, by ShadeData.
+/// The tables that workers read, by ShadeData.
 constexpr std::array<std::uint64_t, kShadeData> kTables{
-    kSky + (std::uint64_t{1} << 48), kSky + (std::uint64_t{1} << 49), kSky + (std::uint64_t{1} << 50)};
+    kSky + (std::uint64_t{1} << 48), kSky + (std::uint64_t{1} << 49), kSky + (std::uint64_t{1} << 50),
+    kSky + (std::uint64_t{3} << 49)};
+constexpr std::array<std::uint64_t RayDataBytes::*, kShadeData> kTableBytes{
+    &RayDataBytes::materials_read, &RayDataBytes::vertices_read, &RayDataBytes::texels_read, &RayDataBytes::pages_read};
 constexpr std::uint32_t kPixelBytes = 16;  // four floats
 static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky && kTables.back() < kMemoryEnd);
 
@@ -30,6 +34,7 @@ RayData::RayData(const Settings& settings, const Workload& workload, const std::
     : memory_(settings.memory),
       slots_(settings.slots),
       shared_by_(static_cast<std::uint32_t>(settings.memory.shared_by)),
+      surfaces_(settings.surfaces),
       line_bytes_(static_cast<std::uint64_t>(settings.memory.line_bytes)),
       workload_(workload) {
   for (const SidePorts& cache : caches) ports_.emplace_back(of_shared_cache(memory_), settings.link, cache);
@@ -96,8 +101,9 @@ bool RayData::fetch_for_shading(const RayResult& ray, Cycle now) {
   const std::uint32_t bytes = keeps_states() ? workload_.path_memory(ray.tag).state_bytes : 0;
   sky_reads_.clear();
   if (keeps_sky()) workload_.sky_reads(ray, sky_reads_);
+  facts_ = surfaces_ ? workload_.shade_facts(ray) : ShadeFacts{};
   const std::size_t reads = sky_reads_.size() + (bytes > 0 ? 1 : 0);
-  if (reads == 0) return false;
+  if (reads == 0 && facts_.material.empty()) return false;
   const std::uint32_t index = begin();
   waiting_[index].kind = Kind::kShading;
   waiting_[index].missing = reads;
@@ -112,19 +118,30 @@ bool RayData::fetch_for_shading(const RayResult& ray, Cycle now) {
     port_of(span).request(span, index, now);
     bytes_.sky_read += span.bytes;
   }
+  std::size_t& missing = waiting_[index].missing;
+  missing += read_lines(ShadeData::kMaterial, std::move(facts_.material), index, now);
+  missing += read_lines(ShadeData::kVertices, std::move(facts_.vertices), index, now);
+  for (std::vector<DataRead>& lookup : facts_.lookups)
+    missing += read_lines(ShadeData::kTexels, std::move(lookup), index, now);
   return true;
 }
 
 void RayData::read(ShadeData what, const DataRead& data, const ProgramRead& by, Cycle now) {
   const std::uint32_t index = begin();
   waiting_[index].kind = Kind::kProgram;
-  waiting_[index].missing = 1;
   waiting_[index].read = by;
-  const ShapeSpan span{kTables[static_cast<std::size_t>(what)] + data.offset, data.bytes};
-  port_of(span).request(span, index, now);
-  constexpr std::array<std::uint64_t RayDataBytes::*, kShadeData> kBytes{
-      &RayDataBytes::materials_read, &RayDataBytes::vertices_read, &RayDataBytes::texels_read};
-  bytes_.*kBytes[static_cast<std::size_t>(what)] += span.bytes;
+  waiting_[index].missing = read_lines(what, {data}, index, now);
+}
+
+/// Reads data of a table; returns the number of reads, one a line.
+std::size_t RayData::read_lines(ShadeData what, std::vector<DataRead> data, std::uint32_t index, Cycle now) {
+  if (what != ShadeData::kPages) by_line(data, line_bytes_);
+  for (const DataRead& read : data) {
+    const ShapeSpan span{kTables[static_cast<std::size_t>(what)] + read.offset, read.bytes};
+    port_of(span).request(span, index, now);
+    bytes_.*kTableBytes[static_cast<std::size_t>(what)] += span.bytes;
+  }
+  return data.size();
 }
 
 void RayData::made(std::span<const RayRequest> rays, Cycle now) {

@@ -24,6 +24,7 @@ namespace carousel::ringbus::cycle {
 ///   has come back, before that joins the queue of a worker.
 /// - `memory.sky_map: memory`: what shading a ray reads of the map of the sky is read when the ray has come back,
 ///   before it joins the queue of a worker.
+/// - `memory.surfaces: memory`: likewise what it reads of the surface, without programs.
 /// - `memory.film: memory`: when the last ray of a path has been shaded, its pixel is read, and written when it has
 ///   come.
 ///
@@ -36,6 +37,7 @@ class RayData final : public ProgramMemory {
     MemoryConfig memory;
     LinkConfig link;
     std::uint32_t slots = 1;  ///< slots of a resource, those of bundles included
+    bool surfaces = false;    ///< memory.surfaces: memory, and no programs, which read themselves
   };
   /// A group that has slots, and waits for its records.
   struct Group {
@@ -45,7 +47,7 @@ class RayData final : public ProgramMemory {
 
   /// `caches`: the channels to each L2 and back. Keeps a reference to the workload.
   RayData(const Settings& settings, const Workload& workload, const std::vector<SidePorts>& caches);
-  /// Tells whether the configuration keeps any such data in memory. A sky without a map has none.
+  /// Tells whether the configuration keeps such data, but for surfaces, in memory. A sky without a map has none.
   static bool wanted(const MemoryConfig& memory, bool has_sky_map);
 
   bool keeps_records() const { return memory_.ray_records == MemoryConfig::RayRecords::kMaster; }
@@ -58,8 +60,8 @@ class RayData final : public ProgramMemory {
   void fetch(Group&& group, std::span<const Place> places, Cycle now);
   /// Rays that were in these slots are complete.
   void completed(ResourceId resource, std::span<const std::uint32_t> slots, Cycle now);
-  /// Reads what shading a complete ray needs: the state of its path, and parts of the sky. The ray comes back by
-  /// take(). Returns false if it need not wait.
+  /// Reads what shading a complete ray needs: the state of its path, parts of the sky, and the surface. The ray
+  /// comes back by take(). Returns false if it need not wait.
   bool fetch_for_shading(const RayResult& ray, Cycle now);
   /// New rays have been made.
   void made(std::span<const RayRequest> rays, Cycle now);
@@ -97,6 +99,7 @@ class RayData final : public ProgramMemory {
   };
 
   std::uint32_t begin();
+  std::size_t read_lines(ShadeData what, std::vector<DataRead> data, std::uint32_t index, Cycle now);
   ShapeSpan record_at(ResourceId resource, std::uint32_t slot) const;
   ShapeSpan state_at(std::uint32_t path, std::uint32_t bytes) const;
   static ShapeSpan pixel_at(std::uint32_t pixel);
@@ -105,6 +108,7 @@ class RayData final : public ProgramMemory {
 
   MemoryConfig memory_;
   std::uint32_t slots_, shared_by_;
+  bool surfaces_;
   std::uint64_t line_bytes_;
   const Workload& workload_;
   std::vector<ShapePort> ports_;
@@ -113,6 +117,7 @@ class RayData final : public ProgramMemory {
   std::vector<std::uint32_t> in_flight_;              // by path: rays that have not been shaded
   std::vector<std::optional<std::uint32_t>> pixels_;  // pixels of the rays that are being shaded
   std::vector<SkyRead> sky_reads_;                    // scratch
+  ShadeFacts facts_;                                  // scratch
   RayDataBytes bytes_;
 };
 

@@ -96,8 +96,10 @@ bool ShadeWorkers::start_job(std::uint32_t place, Cycle now) {
 /// The job of this place begins: its end is known, or that of its programs will be.
 void ShadeWorkers::begin(std::uint32_t place, Cycle now) {
   Job& job = jobs_[place];
-  if (job.call) {
-    const Cycle cycles = costs_.any_hit_calls(job.call->rays.times);
+  if (job.call && cores_ && cores_->answers_any_hit()) {
+    cores_->begin_any_hit(place, job.call->rays.calls, now);
+  } else if (job.call) {
+    const Cycle cycles = costs_.any_hit_calls(job.call->rays.calls.size());
     ends_.push({cores_ ? cores_->occupy(place, cycles, now) : now + cycles, place});
   } else if (job.made.empty()) {
     if (cores_)

@@ -24,7 +24,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
       transforms_(settings.accuracy, machine.accel, store_.slots()),
-      threads_(store_.slots(), Thread{{}, RayWalk(transforms_, settings.resource.collections.order), {}, 0}),
+      threads_(store_.slots(), Thread{{}, RayWalk(transforms_, settings.resource.collections.order), {}, {}}),
       ledger_(tester_),
       samples_(settings.observed.samples, kFirstPortCounter),
       recording_(settings.recording),
@@ -61,9 +61,10 @@ void IndependentTile::step(Cycle now) {
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
       shapes_.release(slot, now);
-      if (const std::uint64_t times = std::exchange(threads_[slot].calls_any_hit, 0); times > 0) {
-        AnyHitQuestion question{{slot}, times};
-        ports_.questions->send(question_wire_.send(question.bytes(), now), std::move(question));
+      if (HitBatch& calls = threads_[slot].calls; !calls.empty()) {
+        AnyHitQuestion question{{slot}, std::exchange(calls, {})};
+        const Cycle arrival = question_wire_.send(question.bytes(), now);  // before the question is moved away
+        ports_.questions->send(arrival, std::move(question));
       } else {
         keep_running(slot, now);
       }
@@ -138,9 +139,12 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
   }
   Thread& thread = threads_[slot];
   stack_held_ -= thread.walk.stack_bytes().held;
+  std::vector<AnyHitCall> calls;
   const IntersectionCounts counts =
-      thread.walk.test(accel_, thread.strip, {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
-  if (ports_.questions != nullptr) thread.calls_any_hit = counts.any_hit_calls;
+      thread.walk.test(accel_, thread.strip,
+                       {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr,
+                        ports_.questions != nullptr ? &calls : nullptr});
+  for (const AnyHitCall& call : calls) thread.calls.push_back(AnyHitHold::completed_at(call));
   const std::uint64_t held = thread.walk.stack_bytes().held;
   stack_held_ += held;
   stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);

@@ -17,6 +17,7 @@
 #include "ringbus/cycle/tile/tile_ledger.h"
 #include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/resource/visit/any_hit_hold.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -56,7 +57,7 @@ class IndependentTile final : public ResourceAgent {
     RayId ray;
     RayWalk walk;
     accel::NodeKey strip;         // fetched or in test
-    std::uint64_t calls_any_hit;  // calls to ask shading for when it has been tested
+    HitBatch calls;               // any-hit calls to ask shading for when it has been tested
   };
   /// A ray in test. Of rays whose tests end at one time, the one that began first goes on first.
   struct Test {

@@ -65,6 +65,7 @@ void read_energy(const SimulatedMachine& machine, EnergyEvents& events) {
   events.products = shading.products;
   events.lookups = shading.lookups;
   events.programs = shading.programs;
+  events.shade_data = shading.data;
   events.activations = 0;
   for (const auto& memory : machine.memory().memories()) events.activations += memory->activations();
 }

@@ -53,16 +53,22 @@ AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory,
   return out;
 }
 
-bool has_ray_data(const Config& config) {
+/// Programs read surfaces while they run, and Gaussians have none.
+bool keeps_surfaces(const Config& config, const accel::Accel& accel) {
+  return config.memory.surfaces == MemoryConfig::ShadingData::kMemory && !config.shading.program.any() &&
+         config.workload.kind == WorkloadConfig::Kind::kRays && accel.gaussians == nullptr;
+}
+
+bool has_ray_data(const Config& config, const accel::Accel& accel) {
   const bool sky_map =
       config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty();
-  return RayData::wanted(config.memory, sky_map) || config.shading.program.any();
+  return RayData::wanted(config.memory, sky_map) || keeps_surfaces(config, accel) || config.shading.program.any();
 }
 
 ShadingSettings shading_settings(const Config& config) {
   std::shared_ptr<const ShadePrograms> programs;
   if (config.shading.program.any())
-    programs = std::make_shared<const ShadePrograms>(shade_programs(config.shading, config.programs));
+    programs = std::make_shared<const ShadePrograms>(shade_programs(config.shading, config.programs, config.testers));
   const std::size_t vectors = programs ? vectors_held(config.shading, *programs) : 1;
   return {config.shading,
           config.bundles,
@@ -128,7 +134,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       network_(channels_, shared_, config.topology, config.faults, contexts_of(config),
                MachineClocks(config.engine.clock_mhz, config.clocks.synchroniser_cycles),
                ParcelNetwork::shared_wires(plan_, numbers_)),
-      kinds_(machine_kinds(channels_, config.topology.link, config.memory, has_ray_data(config),
+      kinds_(machine_kinds(channels_, config.topology.link, config.memory, has_ray_data(config, accel),
                            has_distributor(config) ? &config.testers.distributor : nullptr,
                            config.collections.traversal)),
       parts_(channels_, numbers_, config.parts, config.memory, config.topology.link, shared_.topology.resources()) {
@@ -189,7 +195,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     std::uint32_t records = 0;
     for (const auto& store : shared_.stores)
       records = std::max(records, store->slots() + store->room().loaded + store->room().own);
-    const RayData::Settings settings{config.memory, config.topology.link, records};
+    const RayData::Settings settings{config.memory, config.topology.link, records, keeps_surfaces(config, accel)};
     shading_->keep_in_memory(std::make_unique<RayData>(settings, workload, ends));
   }
   for (std::uint32_t c = 0; c < numbers_.caches; ++c)

@@ -179,7 +179,7 @@ void BundledTraversal::test_bundle(Packet& packet, LocalBundle& local, Intersect
     members.culls = nullptr;
     accel::test_strip(context_.accel, packet.key, answer.undecided, members, {masks_.data(), packet.nearest, nullptr},
                       counts);
-    context_.any_hit.hold_back(rays);
+    context_.any_hit.hold_back();
   }
   const std::uint8_t together = reformed_ ? 0 : answer.all;
   for (std::size_t i = 0; i < rays.size(); ++i) {
@@ -218,7 +218,7 @@ void BundledTraversal::eject_singles(Packet& packet, const LocalRays& local, Tes
   accel::test_strip(context_.accel, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr},
                     outcome.counts);
   count_children(masks_, outcome);
-  context_.any_hit.hold_back(local.slots);
+  context_.any_hit.hold_back();
   for (std::size_t i = 0; i < local.size(); ++i) {
     packet.members[local.members[i]].mask = 0;
     if (masks_[i] != 0) ejected_.add(local.slots[i], masks_[i]);

@@ -33,7 +33,7 @@ void BundledTraversal::test_leaf(Packet& packet, LocalRays& local, TestOutcome& 
       outcome.reads += static_cast<std::uint32_t>(rays.size());
       charge_transforms(rays, packet.key);
       accel::test_strip(context_.accel, packet.key, met, context_.members(rays), {}, counts);
-      context_.any_hit.hold_back(rays);
+      context_.any_hit.hold_back();
       local.slots.insert(local.slots.end(), rays.begin(), rays.end());
       local.members.resize(local.slots.size(), bundle.member);
       update_range(bundle.slot);

@@ -32,7 +32,7 @@ void OrderedTraversal::test_at(const NextNode& node, const LocalRays& local, Pac
     masks_.assign(local.size(), 0);
     accel::test_strip(context_.accel, node.key, packet.lanes, members, {}, outcome.counts);
   }
-  context_.any_hit.hold_back(local.slots);
+  context_.any_hit.hold_back();
   for (std::size_t i = 0; i < local.size(); ++i) {
     const std::uint32_t slot = local.slots[i];
     const float* entry = entries_.data() + accel::kMaxWidth * i;

@@ -22,7 +22,7 @@ void PieceTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outcome
   // An engine's own tracer also counts the transforms.
   SubtreeTracer& tracer = context_.subtree_tracer != nullptr ? *context_.subtree_tracer : walk_;
   tracer.trace_treelets(from_, members, exits_, outcome.counts);
-  context_.any_hit.hold_back(local.slots);
+  context_.any_hit.hold_back();
   if (!packet.groups.empty()) outcome.nodes = nodes_;
   auto exit = exits_.begin();
   for (std::uint32_t i = 0; i < local.size(); ++i) {

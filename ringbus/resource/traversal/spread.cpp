@@ -19,12 +19,12 @@ void SpreadTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outcom
     masks_.resize(local.size());
     accel::test_strip(context_.accel, packet.key, packet.lanes, members, {masks_.data(), packet.nearest, nullptr},
                       outcome.counts);
-    context_.any_hit.hold_back(local.slots);
+    context_.any_hit.hold_back();
     count_children(masks_, outcome);
     answer(packet, local, masks_);
   } else {
     accel::test_strip(context_.accel, packet.key, packet.lanes, members, {}, outcome.counts);
-    context_.any_hit.hold_back(local.slots);
+    context_.any_hit.hold_back();
     for (const std::uint32_t slot : local.slots) context_.completion.add_pending(slot, -1);
   }
   charge.write(outcome.counts);

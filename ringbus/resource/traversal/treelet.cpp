@@ -28,7 +28,7 @@ void TreeletTraversal::test(Packet& packet, LocalRays& local, TestOutcome& outco
     accel::trace_stream(context_.accel, packet.key, members, outcome.counts);
   else
     accel::trace_interleaved(context_.accel, packet.key, members, outcome.counts);
-  context_.any_hit.hold_back(local.slots);
+  context_.any_hit.hold_back();
   for (const std::uint32_t slot : local.slots) context_.completion.add_pending(slot, -1);
 }
 

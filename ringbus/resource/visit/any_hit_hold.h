@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
+#include "core/types/any_hit.h"
+#include "core/types/workload.h"
 #include "ringbus/rays/ray_store.h"
-#include "ringbus/resource/visit/test_outcome.h"
 
 namespace carousel::ringbus {
 
@@ -17,30 +18,42 @@ class AnyHitHold {
   AnyHitHold(RayStore& store, bool on) : store_(store), on_(on) {}
 
   /// A new visit.
-  void begin() { calls_.clear(); }
-  /// Counters of any-hit calls for the next test of `rays` rays, one a ray; null when it is off.
-  std::uint8_t* counters(std::size_t rays) {
-    if (!on_) return nullptr;
-    counters_.assign(rays, 0);
-    return counters_.data();
+  void begin() {
+    slots_.clear();
+    calls_.clear();
+  }
+  /// Where the next test notes its any-hit calls; null when it is off.
+  std::vector<AnyHitCall>* next_test() {
+    noted_.clear();
+    return on_ ? &noted_ : nullptr;
   }
   /// Adds one to the counts of the tested rays that made calls. To be called before the test is taken from them.
-  void hold_back(std::span<const std::uint32_t> slots) {
-    if (!on_) return;
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      if (counters_[i] == 0) continue;
-      ++store_.record(slots[i]).pending;
-      calls_.push_back({slots[i], counters_[i]});
+  void hold_back() {
+    const RayRecord* last = nullptr;
+    for (const AnyHitCall& call : noted_) {
+      if (call.record != last) {
+        const auto slot = static_cast<std::uint32_t>(call.record - store_.records());
+        ++store_.record(slot).pending;
+        slots_.push_back(slot);
+      }
+      last = call.record;
+      calls_.push_back(completed_at(call));
     }
+    noted_.clear();
   }
-  /// The rays held back during this visit.
-  std::span<const AnyHitCall> calls() const { return calls_; }
+  /// The rays held back during this visit, and their calls.
+  std::span<const std::uint32_t> slots() const { return slots_; }
+  std::span<const RayResult> calls() const { return calls_; }
+
+  /// A call as a shader worker gets it: the ray with the place of the call for its hit.
+  static RayResult completed_at(const AnyHitCall& call) { return {call.record->ray, call.place, call.record->tag}; }
 
  private:
   RayStore& store_;
   bool on_;
-  std::vector<std::uint8_t> counters_;
-  std::vector<AnyHitCall> calls_;
+  std::vector<AnyHitCall> noted_;     // of the present test, the calls of a ray together
+  std::vector<std::uint32_t> slots_;  // of the visit, as those below
+  std::vector<RayResult> calls_;
 };
 
 }  // namespace carousel::ringbus

@@ -14,7 +14,7 @@ void PieceWalk::trace(accel::NodeKey from, const accel::RayMembers& members, Int
 void PieceWalk::trace_treelets(std::span<const accel::NodeKey> from, const accel::RayMembers& members,
                                std::vector<PacketExit>& exits, IntersectionCounts& counts) {
   for (std::uint32_t i = 0; i < members.count; ++i) {
-    const accel::RayMembers ray{members.records, members.slots + i, 1, members.culls};
+    const accel::RayMembers ray{members.records, members.slots + i, 1, members.culls, members.any_hit_calls};
     const RayRecord& record = members.records[*ray.slots];
     bool first = true;
     stack_.assign(1, {from[i], 0, 0, true});
@@ -31,9 +31,6 @@ void PieceWalk::trace_treelets(std::span<const accel::NodeKey> from, const accel
       if (!first) tests.transforms = tests.transforms_in_double = 0;
       first = false;
       counts += tests;
-      if (members.any_hit_calls != nullptr)
-        members.any_hit_calls[i] =
-            static_cast<std::uint8_t>(std::min<std::uint64_t>(255, members.any_hit_calls[i] + tests.any_hit_calls));
       if (!at.key.ref.is_inner()) continue;
       const accel::Node& node = accel_.nodes[at.key.ref.node()];
       const auto met = static_cast<std::ptrdiff_t>(exits.size());

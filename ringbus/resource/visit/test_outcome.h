@@ -7,14 +7,10 @@
 #include "core/statistics/bundle_counts.h"
 #include "core/statistics/intersection_counts.h"
 #include "core/statistics/node_counts.h"
+#include "core/types/workload.h"
 #include "ringbus/packets/packet.h"
 
 namespace carousel::ringbus {
-
-/// A ray that made any-hit calls during a test, and how many.
-struct AnyHitCall {
-  std::uint32_t slot, times;
-};
 
 /// Passes of a packet's bundles through the units that test them (US 11308683, FIG. 11 and 12): one a test, or one an
 /// edge of a silhouette.
@@ -37,7 +33,8 @@ struct TestOutcome {
   BundlePasses bundle_passes;
   const BundleCounts* bundles = nullptr;  ///< counts of tests and splits of bundles; null when there are none
   /// With ResourceHooks::hold_any_hit_rays: the rays that wait for Resource::release().
-  std::span<const AnyHitCall> any_hit_calls;
+  std::span<const std::uint32_t> any_hit_slots;
+  std::span<const RayResult> any_hit_calls;  ///< their calls
   /// Where rays of one packet are at several nodes: the node of each ray, and the work at each node. Otherwise empty.
   std::span<const NextNode> nodes;
   std::span<const NodeCountsAtDepth> runs;

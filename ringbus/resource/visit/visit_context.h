@@ -28,7 +28,7 @@ struct VisitContext {
 
   /// The rays of `slots`, as the kernels take them for one test.
   accel::RayMembers members(std::span<const std::uint32_t> slots) const {
-    return {store.records(), slots.data(), slots.size(), culls, any_hit.counters(slots.size())};
+    return {store.records(), slots.data(), slots.size(), culls, any_hit.next_test()};
   }
 };
 

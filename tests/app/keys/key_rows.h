@@ -13,6 +13,9 @@ namespace carousel {
 inline const std::vector<std::string> kShortShaders{"programs.shaders.NAME.program=['load a, 1']",
                                                     "shading.program.default=NAME", "shading.workers=1"};
 
+inline const std::vector<std::string> kSmallDataCache{"shading.program.default=built_in", "shading.workers=1",
+                                                      "shading.data_cache.bytes=1024"};
+
 /// One row, or several, for every key.
 inline std::vector<KeyRow> key_rows() {
   using enum BaseMachine;
@@ -230,6 +233,7 @@ inline std::vector<KeyRow> key_rows() {
       {"memory.path_state", kTerrain},
       {"memory.film", kTerrain},
       {"memory.sky_map", kTerrain, {"scene.sky.file=map.hdr"}},
+      {"memory.surfaces", kTerrain},
       {"memory.l2_ray_ways", kTerrain, {"memory.path_state=memory", "memory.l2_kib=4"}, {"4"}},
       {"memory.l2_answer_bytes_per_cycle", kTerrain, {}, {"4"}},
       {"memory.shape_buffer_kib", kTerrain, {"memory.fetch=resource", "memory.shape_buffer_kib=64"}, {"1"}},
@@ -243,6 +247,19 @@ inline std::vector<KeyRow> key_rows() {
       {"shading.program.shadow", kTerrain, kShortShaders, {"built_in"}},
       {"shading.program.plain", kTerrain, kShortShaders, {"built_in"}},
       {"shading.program.camera", kTerrain, kShortShaders, {"built_in"}},
+      {"shading.program.any_hit",
+       kLayers,
+       {"programs.shaders.NAME.program=['load a, 1']", "shading.program.default=NAME", "testers.any_hit=shader"},
+       {"built_in", "constant"}},
+      {"shading.data_cache.bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"1024"}},
+      {"shading.data_cache.line_bytes", kTerrain, kSmallDataCache, {"256"}},
+      {"shading.data_cache.ways", kTerrain, kSmallDataCache, {"1"}},
+      {"shading.data_cache.latency_cycles", kTerrain, kSmallDataCache, {"400"}},
+      {"shading.translation.page_bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"4096"}},
+      {"shading.translation.entries",
+       kTerrain,
+       {"shading.program.default=built_in", "shading.workers=1", "shading.translation.page_bytes=4096"},
+       {"1"}},
       {"shading.registers", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"256"}},
       {"shading.instruction_cache.bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"256"}},
       {"shading.instruction_cache.line_bytes",

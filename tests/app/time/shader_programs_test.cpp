@@ -5,7 +5,9 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
+#include "core/system/error.h"
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::shader_programs_test {
@@ -112,6 +114,82 @@ TEST_F(ShaderPrograms, RegistersLimitTheRaysThatAreHeld) {
   // holds.
   for (const Json& r : {one, four})
     EXPECT_NEAR(bound(r), 1000 * one["rays"]["completed"].get<double>() / (6 * rays), 1e-6 * bound(r));
+}
+
+// Reads go through the data cache and the pages of their worker, and nothing else changes.
+TEST_F(ShaderPrograms, ReadThroughADataCacheAndPages) {
+  const std::vector<std::string> with{"shading.workers=1", "energy.profile=n45"};
+  const Json bare = report(machine("program: built_in"), with);
+  const auto bytes = [](const Json& r) {
+    const Json& data = r["memory"]["ray_data"];
+    return data["materials_read"].get<std::uint64_t>() + data["vertices_read"].get<std::uint64_t>() +
+           data["texels_read"].get<std::uint64_t>();
+  };
+  EXPECT_FALSE(bare["shading"]["programs"].contains("data"));
+  EXPECT_EQ(bytes(bare), 64 * bare["shading"]["programs"]["data_reads"].get<std::uint64_t>());
+  std::uint64_t misses = ~std::uint64_t{0};
+  for (const int size : {256, 1024, 1 << 20}) {
+    SCOPED_TRACE(size);
+    const Json r = report(
+        machine(fmt::format("program: built_in, data_cache: {{bytes: {}}}, translation: {{page_bytes: 4096}}", size)),
+        with);
+    const Json& d = r["shading"]["programs"]["data"];
+    const auto of = [&](const char* key) { return d[key].get<std::uint64_t>(); };
+    EXPECT_EQ(r["digest"], bare["digest"]);
+    EXPECT_EQ(d["lines"], r["shading"]["programs"]["data_reads"]);
+    EXPECT_EQ(d["pages"], d["lines"]);
+    EXPECT_EQ(bytes(r), 64 * of("misses"));
+    EXPECT_LE(of("hits") + of("misses"), of("lines"));
+    EXPECT_EQ(of("walk_reads"), 4 * of("walks"));
+    EXPECT_EQ(r["memory"]["ray_data"]["pages_read"], 8 * of("walk_reads"));
+    EXPECT_LT(of("misses"), misses) << "more lines have room";
+    misses = of("misses");
+    // Registers, the store of programs, the cache, and 32 pages of 16 bytes, at the area of memory.
+    const double kib = (size + 32 * 16) / 1024.0;
+    const double mm2_of_kib =
+        r["area"]["parts"]["l2"]["mm2"].get<double>() / r["area"]["parts"]["l2"]["size"].get<double>();
+    EXPECT_NEAR(
+        r["area"]["parts"]["shaders"]["mm2"].get<double>() - bare["area"]["parts"]["shaders"]["mm2"].get<double>(),
+        kib * mm2_of_kib, 1e-6);
+    EXPECT_GT(r["energy"]["parts"]["shades"]["joules"], bare["energy"]["parts"]["shades"]["joules"]);
+  }
+  const std::string one_vector = "registers: 64, program: built_in";
+  const Json large = report(machine(one_vector + ", data_cache: {bytes: 1048576, latency_cycles: 4}"), with);
+  EXPECT_EQ(large["shading"]["programs"]["data"]["walks"], 0);
+  EXPECT_LT(cycles(large), cycles(report(machine(one_vector), with)));
+}
+
+TEST_F(ShaderPrograms, DataCachesAndPagesAreWhole) {
+  const auto refused = [&](const char* set) -> std::string {
+    try {
+      report(machine("program: built_in, data_cache: {bytes: 1024}"), {set});
+    } catch (const ConfigError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  using testing::HasSubstr;
+  EXPECT_THAT(refused("shading.data_cache.bytes=1000"),
+              HasSubstr("expected a multiple of the 256 bytes of 4 lines, found 1000"));
+  EXPECT_THAT(refused("shading.data_cache.line_bytes=96"),
+              HasSubstr("expected a multiple of memory.line_bytes, which are 64, found 96"));
+  EXPECT_THAT(refused("shading.translation.page_bytes=6000"),
+              HasSubstr("expected 0, or a power of two from 4096, found 6000"));
+}
+
+// Shading without programs reads the same surfaces, if they are in memory: those of rays that hit one.
+TEST_F(ShaderPrograms, SurfacesAreReadWithoutThemToo) {
+  const Json programs = report(machine("program: own", "'read a, material', 'read b, vertices'"));
+  const Json free = report(machine("cycles_per_shade: 20")),
+             memory = report(machine("cycles_per_shade: 20"), {"memory.surfaces=memory"});
+  EXPECT_FALSE(free["memory"].contains("ray_data"));
+  for (const char* key : {"materials_read", "vertices_read"})
+    EXPECT_EQ(memory["memory"]["ray_data"][key], programs["memory"]["ray_data"][key]) << key;
+  std::uint64_t hits = 0;
+  for (const Json& bounce : memory["rays"]["by_bounce"]) hits += bounce["hit"].get<std::uint64_t>();
+  EXPECT_EQ(memory["memory"]["ray_data"]["materials_read"], 128 * hits);
+  EXPECT_EQ(memory["digest"], free["digest"]);
+  EXPECT_GT(cycles(memory), cycles(free));
 }
 
 // Each kind of work has its own program.

@@ -167,6 +167,14 @@ TEST(ShadeCore, InstructionsComeThroughTheCache) {
   EXPECT_EQ(thrashes.core().instruction_misses(), 6u);
 }
 
+TEST(ShadeCore, ALineThatWasReplacedServesThoseWhoWaitForIt) {
+  Worker worker(compiled({{"load a, 1"}, {"load b, 1"}}), 2, 1, {64, 64, 40});
+  worker.begin(0, {ray({}, 0)}, 0);
+  worker.begin(1, {ray({}, 1)}, 0);
+  EXPECT_EQ(worker.run(2), (Ends{41, 42}));
+  EXPECT_EQ(worker.core().instruction_misses(), 2u);
+}
+
 TEST(ShadeCore, VectorsShareALineThatIsUnderWay) {
   Worker worker(compiled({{"load a, 1", "load b, 1"}}), 2, 1, {1024, 64, 10});
   worker.begin(0, {ray({})}, 0);

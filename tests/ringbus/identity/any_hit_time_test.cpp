@@ -67,6 +67,21 @@ TEST(AnyHitTime, IsTheTripToAWorkerAndBack) {
   EXPECT_EQ(trip, at_once - 3 + 2 * hop) << "instead of three cycles in the unit";
   config.shading.cycles_per_any_hit = 7;
   EXPECT_EQ(cycles() - trip, 3u * 7u);
+
+  // A program in place of the constant: seven instructions a call, which wait for nothing.
+  config.programs.shaders.named["one"].program = {"load a, 1"};
+  std::vector<std::string>& own = config.programs.shaders.named["own"].program;
+  for (int i = 0; i < 7; ++i) own.push_back("load r" + std::to_string(i) + ", 1");
+  config.shading.program.standard = "one";
+  config.shading.program.of_kind[kAnyHitKind] = "constant";
+  const Cycle constant = cycles();
+  config.shading.program.of_kind[kAnyHitKind] = "own";
+  EXPECT_EQ(cycles(), constant);
+  own.push_back("sqrt r0, r0");
+  own.push_back("add r1, r0, r0");
+  EXPECT_EQ(cycles() - constant, 3u * (16u + 1u)) << "the sum waits for the root";
+  config.shading.lanes = 3;
+  EXPECT_EQ(cycles() - constant, (16u + 1u) + 7u - 3u * 7u) << "the three calls side by side";
 }
 
 }  // namespace

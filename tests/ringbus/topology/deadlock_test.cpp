@@ -71,6 +71,15 @@ TEST(MemoryEstimate, GrowsWithWhatTakesMemory) {
   more = c;
   more.topology.shape = TopologyShape::kBidirectional;
   EXPECT_GT(estimate_memory(more, 10).packets, base.packets);
+  more = c;
+  more.engine.kind = EngineKind::kCycle;
+  more.shading.workers = 256;
+  more.shading.instruction_cache = {.bytes = 1 << 24, .line_bytes = 8};
+  EXPECT_EQ(estimate_memory(more, 10).worker_caches, 0u) << "no programs";
+  more.shading.program.standard = "built_in";
+  // Of each line its name and its time.
+  EXPECT_EQ(estimate_memory(more, 10).worker_caches, std::uint64_t{256} << 25);
+  EXPECT_EQ(estimate_memory(more, 10).total(), estimate_memory(c, 10).total() + (std::uint64_t{256} << 25));
 }
 
 }  // namespace

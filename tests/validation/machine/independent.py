@@ -29,13 +29,19 @@ class IndependentTile:
             self.trace.note(now, self.number, "new_rays", 0, len(rays))
             for ray in rays:
                 self.advance(Thread(ray, self.nodes, self.transforms, self.order), now)
+        while self.control.answers.channel.ready(now):
+            for thread in self.control.answers.channel.take():
+                self.advance(thread, now)
         self.shapes.take_answers(now)
         self.serve(now)
         while self.tests and self.tests[0][0] <= now:
             thread = heapq.heappop(self.tests)[2]
             self.trace.note(now, self.number, "tested_ray", thread.ray.slot, 1)
             self.shapes.release(thread.user, now)
-            self.advance(thread, now)
+            if thread.ray.asked:
+                self.control.ask([thread], thread.ray.take_calls(), now)
+            else:
+                self.advance(thread, now)
             self.serve(now)
         if self.done:
             self.trace.note(now, self.number, "complete", 0, len(self.done))

@@ -1,10 +1,12 @@
 """Data of rays and paths in memory ("Master copies", "Data in memory")."""
 from .clock import ceil_div
 from .memory import ShapePort
+from .shaders import by_line
 
 RECORDS, STATES, FILM = 1 << 50, 1 << 51, 1 << 52
 SKY = FILM + (1 << 51)
-TABLES = {"material": SKY + (1 << 48), "vertices": SKY + (1 << 49), "texels": SKY + (1 << 50)}
+TABLES = {"material": SKY + (1 << 48), "vertices": SKY + (1 << 49), "texels": SKY + (1 << 50),
+          "pages": SKY + (3 << 49)}
 RECORD, PIXEL = 64, 16
 
 
@@ -15,8 +17,15 @@ class Records:
         self.issuer, self.rays, self.missing = issuer, rays, len(rays)
 
 
+class Lines:
+    """What a shader worker reads."""
+
+    def __init__(self, by, missing):
+        self.by, self.missing = by, missing
+
+
 class Shading:
-    """A completed ray whose path state, or parts of the sky, are on their way."""
+    """A completed ray whose path state, parts of the sky, or surface are on their way."""
 
     def __init__(self, ray, missing):
         self.ray, self.missing = ray, missing
@@ -62,7 +71,8 @@ class RayData:
         caches = ceil_div(config["topology"]["resources"], self.shared)
         own = dict(config, memory=dict(m, l1_kib=0))
         programs = config["shading"]["program"]["default"] != "constant"
-        used = programs or self.records or self.film or sky or m.get("path_state") == "memory"
+        self.surfaces = m.get("surfaces") == "memory" and not programs
+        used = programs or self.surfaces or self.records or self.film or sky or m.get("path_state") == "memory"
         self.ports = [ShapePort(own, clock) for _ in range(caches if used else 0)]
 
     def record_of(self, ray):
@@ -90,12 +100,20 @@ class RayData:
         for ray in rays:
             spans = [self.state_of(ray)] if self.state_bytes else []
             spans += [(SKY + offset, size) for offset, size in self.sky.get(ray.name, [])]
+            if self.surfaces:
+                spans += self.surface_of(ray)
             waiting = Shading(ray, len(spans))
             for span in spans:
                 self.port(span).request(span, waiting, now)
             if not spans:
                 ready.append(ray)
         return ready
+
+    def surface_of(self, ray):
+        reads = ray.fact["reads"]
+        tables = [("material", reads["material"]), ("vertices", reads["vertices"])]
+        tables += [("texels", texels) for texels in reads["lookups"]]
+        return [(TABLES[what] + offset, size) for what, data in tables for offset, size in by_line(data, self.line)]
 
     def made(self, rays, now):
         for ray in rays:
@@ -111,8 +129,12 @@ class RayData:
                 self.port(span).request(span, span, now)
 
     def program_read(self, what, offset, size, by, now):
-        span = TABLES[what] + offset, size
-        self.port(span).request(span, [by], now)
+        """A walker reads an entry, and others lines."""
+        lines = [(offset, size)] if what == "pages" else by_line([(offset, size)], self.line)
+        waiting = Lines(by, len(lines))
+        for offset, size in lines:
+            span = TABLES[what] + offset, size
+            self.port(span).request(span, waiting, now)
 
     def take(self, now):
         """Rays whose states have come, groups whose records have, and what programs read."""
@@ -123,10 +145,10 @@ class RayData:
                 if isinstance(what, tuple):
                     port.request(what, None, now)
                     continue
-                if isinstance(what, list):
-                    reads += what
-                    continue
                 what.missing -= 1
+                if isinstance(what, Lines):
+                    reads += [what.by] if what.missing == 0 else []
+                    continue
                 if what.missing == 0 and isinstance(what, Records):
                     groups.append(what)
                 elif what.missing == 0:

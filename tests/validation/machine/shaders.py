@@ -1,11 +1,13 @@
 """Shader workers that run programs ("Shader programs"): an interpreter that walks a program's text as a tree of blocks
 with the set of lanes that take each, and the worker that issues what the interpreters of its vectors ask for."""
+import heapq
+
 import programs
 
 KINDS = ["miss", "shadow", "unlit", "plain", "textured", "layered", "opaque", "layered_opaque", "transmissive",
-         "layered_transmissive", "anything", "camera"]
+         "layered_transmissive", "anything", "camera", "any_hit"]
 FACTS = ["hit", "shadow", "bounce", "last", "lights", "emissive", "alpha", "lookups", "products"]
-CAMERA = KINDS.index("camera")
+CAMERA, ANY_HIT = KINDS.index("camera"), KINDS.index("any_hit")
 INSTRUCTION = 8
 
 
@@ -123,6 +125,104 @@ def by_line(reads, line):
     return [(at * line, line) for at in sorted(lines)]
 
 
+class DataPath:
+    """The TLB and the data cache of a worker, and its walker."""
+    TABLES = ["material", "vertices", "texels"]
+
+    def __init__(self, cores, cache, pages):
+        self.clock, self.data = cores.clock, cores.data
+        self.line = (cache["line_bytes"] if cache["bytes"] and cache["line_bytes"] != "auto" else None) or self.data.line
+        self.latency = cache["latency_cycles"] if cache["bytes"] else 0
+        self.sets = [[] for _ in range(cache["bytes"] // (self.line * cache["ways"]))]  # that used last at the end
+        self.ways, self.entries, self.tlb = cache["ways"], pages["entries"], []
+        bits = pages["page_bytes"].bit_length() - 1
+        self.page, self.levels = pages["page_bytes"], -(-(48 - bits) // 9) if bits >= 0 else 0
+        self.coming = {}  # by address: reads that wait for a line
+        self.walks = []  # [page, reads that wait for it]
+        self.level = self.free = 0
+        self.events, self.order = [], 0
+
+    def at(self, time, do, *what):
+        self.order += 1
+        heapq.heappush(self.events, (time, self.order, do, what))
+        self.clock.wake(time)
+
+    def due(self, now):
+        return bool(self.events) and self.events[0][0] <= now
+
+    def program_read(self, what, offset, size, by, now):
+        sent = max(now, self.free)
+        self.free = sent + 1
+        self.at(sent, self.look_up_page, ((self.TABLES.index(what) << 40) + offset, what, offset, by))
+
+    def step(self, now):
+        while self.due(now):
+            _, _, do, what = heapq.heappop(self.events)
+            do(*what, now)
+
+    def look_up_page(self, read, now):
+        if not self.levels:
+            return self.look_up_line(read, now)
+        page = read[0] // self.page
+        if page in self.tlb:
+            self.tlb.remove(page)
+            self.tlb.append(page)
+            return self.look_up_line(read, now)
+        for walk in self.walks:
+            if walk[0] == page:
+                return walk[1].append(read)
+        self.walks.append([page, [read]])
+        if len(self.walks) == 1:
+            self.read_level(now)
+
+    def read_level(self, now):
+        entry = self.walks[0][0] // 512 ** (self.levels - 1 - self.level)
+        self.data.program_read("pages", (self.level << 44) + 8 * entry, 8, (self, None), now)
+
+    def look_up_line(self, read, now):
+        address, what, offset, by = read
+        if not self.sets:
+            return self.data.program_read(what, offset, self.line, by, now)
+        of = self.sets[address // self.line % len(self.sets)]
+        if address in of:
+            of.remove(address)
+            of.append(address)
+            self.at(now + self.latency, self.answer, by)
+        elif address in self.coming:
+            self.coming[address].append(by)
+        else:
+            self.coming[address] = [by]
+            self.at(now + self.latency, self.ask, read)
+
+    def ask(self, read, now):
+        self.data.program_read(read[1], read[2], self.line, (self, read[0]), now)
+
+    def take(self, address, now):
+        """A line has come, or an entry of the page table."""
+        if address is not None:
+            of = self.sets[address // self.line % len(self.sets)]
+            del of[:max(0, len(of) + 1 - self.ways)]
+            of.append(address)
+            for by in self.coming.pop(address):
+                self.at(now, self.answer, by)
+            return
+        self.level += 1
+        if self.level < self.levels:
+            return self.read_level(now)
+        self.level = 0
+        page, reads = self.walks.pop(0)
+        del self.tlb[:max(0, len(self.tlb) + 1 - self.entries)]
+        self.tlb.append(page)
+        for read in reads:
+            self.look_up_line(read, now)
+        if self.walks:
+            self.read_level(now)
+
+    @staticmethod
+    def answer(by, now):
+        Cores.answer(by, now)
+
+
 class Vector:
     """A place of a worker."""
 
@@ -141,8 +241,8 @@ class Vector:
 
 
 class Worker:
-    def __init__(self, cores, vectors):
-        self.cores = cores
+    def __init__(self, cores, vectors, path):
+        self.cores, self.data = cores, path or cores.data
         self.vectors = [Vector() for _ in range(vectors)]
         self.free = 0
         self.lines = {}
@@ -210,10 +310,10 @@ class Worker:
                 reads += data["lookups"][v.lookups[lane]]
                 v.lookups[lane] += 1
         what = "texels" if ask.kind == "texture" else ask.words[2]
-        reads = by_line(reads, self.cores.data.line)
+        reads = by_line(reads, self.data.line)
         v.missing[ask.to] = len(reads)
         for offset, size in reads:
-            self.cores.data.program_read(what, offset, size, (v, ask.to), now)
+            self.data.program_read(what, offset, size, (v, ask.to), now)
 
 
 class Cores:
@@ -226,8 +326,9 @@ class Cores:
         self.latency = {kind: p[kind + "_cycles"] for kind in ("simple", "product", "divide", "branch", "texture", "trace")}
         self.latency["read"] = 0
         named, at, made = s["program"], 0, {}
+        kinds = KINDS if config["testers"]["any_hit"] == "shader" else KINDS[:ANY_HIT]
         self.of_kind = []  # (program, address of its first instruction)
-        for kind, word in enumerate(KINDS):
+        for kind, word in enumerate(kinds):
             name = named.get(word, named["default"])
             key = (name, kind if name == "built_in" else None)
             if key not in made:
@@ -238,7 +339,9 @@ class Cores:
             self.of_kind.append(made[key])
         most = max(len(program.registers) for program, _ in made.values())
         self.vectors = min(64, s["registers"] // (most * self.lanes))
-        self.workers = [Worker(self, self.vectors) for _ in range(s["workers"])]
+        cached = s["data_cache"]["bytes"] or s["translation"]["page_bytes"]
+        self.paths = [DataPath(self, s["data_cache"], s["translation"]) for _ in range(s["workers"] if cached else 0)]
+        self.workers = [Worker(self, self.vectors, self.paths[w] if cached else None) for w in range(s["workers"])]
 
     def begin(self, place, rays, now):
         """`rays`: facts of completed rays, or a number of camera rays."""
@@ -258,14 +361,24 @@ class Cores:
         v.held, v.missing = True, {}
         v.begin_run(now)
 
-    def answer(self, read, now):
+    @staticmethod
+    def answer(read, now):
         v, register = read
+        if isinstance(v, DataPath):
+            return v.take(register, now)
         v.missing[register] -= 1
         if v.missing[register] == 0:
             v.ready[register] = now + v.filter[register]
 
     def step(self, now):
-        return [w * self.vectors + place for w, worker in enumerate(self.workers) for place in worker.step(now)]
+        ended = []
+        while True:
+            for w, worker in enumerate(self.workers):
+                if self.paths:
+                    self.paths[w].step(now)
+                ended += [w * self.vectors + place for place in worker.step(now)]
+            if not any(path.due(now) for path in self.paths):
+                return ended
 
     def order(self, idle):
         """Idle places, the next one last."""

@@ -3,7 +3,7 @@ import heapq
 from collections import deque
 
 from .clock import ceil_div
-from .shaders import Cores
+from .shaders import ANY_HIT, Cores
 from .travel import Sender
 from .tree import Ray
 
@@ -160,6 +160,7 @@ class Shading:
         self.data = machine.ray_data
         self.sender = Sender(config, ceil_div(64, link["bytes_per_cycle"]), controls) if travel else None
         self.lookup, self.products_per_cycle = s["cycles_per_lookup"], s["products_per_cycle"]
+        self.any_hit, self.calls = s["cycles_per_any_hit"], deque()  # (resource, rays, calls)
         self.record = ceil_div(64, link["bytes_per_cycle"])
         self.slots = config["rays"]["slots_per_resource"] * self.node
         self.group = config["packets"]["rays"]
@@ -195,6 +196,9 @@ class Shading:
             self.to_be_shaded(ray, now)
         while self.sorter and self.sorter.rays and self.sorter.rays[0][0] <= now:
             self.queues.push(self.sorter.rays.popleft()[1])
+        for r, control in enumerate(self.controls):
+            while control.questions.channel.ready(now):
+                self.calls.append((r, *control.questions.channel.take()))
         for group in loaded:
             self.send(group.issuer, group.rays, now)
         while self.finish_jobs(now) or self.start_jobs(now):
@@ -223,6 +227,10 @@ class Shading:
             any_done = True
             self.idle.append(worker)
             self.set_in_work(worker, 0)
+            if isinstance(rays, tuple):
+                resource, asking = rays
+                self.controls[resource].answers.send(8 * len(asking), now, asking)
+                continue
             if rays:
                 shaded += rays
                 continue
@@ -266,7 +274,21 @@ class Shading:
         first = place // self.held * self.held
         self.queues.in_work[place // self.held] = sum(self.in_work[first:first + self.held])
 
+    def answer_calls(self, worker, now):
+        """The any-hit calls that came first are a job."""
+        resource, asking, calls = self.calls.popleft()
+        self.set_in_work(worker, 1)
+        if self.cores:
+            self.running[worker] = (resource, asking), []
+            return self.cores.begin(worker, [dict(call, shader=ANY_HIT) for call in calls], now)
+        end = now + self.any_hit * ceil_div(len(calls), self.lanes)
+        heapq.heappush(self.jobs, (end, worker, (resource, asking), []))
+        self.clock.wake(end)
+
     def start_job(self, worker, now):
+        if self.calls:
+            self.answer_calls(worker, now)
+            return True
         rays, names, end = self.queues.take(worker // self.held), [], now
         if rays:
             end += 0 if self.cores else self.cycles(rays)

@@ -65,7 +65,7 @@ class DrawnProgram:
 def draw_programs(r, config):
     shading = config["shading"]
     names = r.choice([["a"], ["a", "b"], ["a", "built_in"]])
-    kinds = [kind for kind in KINDS if r.random() < 0.3]
+    kinds = [kind for kind in KINDS[:-1] if r.random() < 0.3]
     shading["program"] = {"default": names[0], **{kind: r.choice(names) for kind in kinds}}
     shading["registers"] = shading["lanes"] * 64 * r.choice([1, 1, 2, 5])
     line = r.choice([16, 64])
@@ -74,6 +74,27 @@ def draw_programs(r, config):
     config["programs"] = {kind + "_cycles": r.choice([1, 2, 5, 12])
                           for kind in ("simple", "product", "divide", "branch", "texture", "trace")}
     config["programs"]["shaders"] = {name: {"program": DrawnProgram(r).lines} for name in names if name != "built_in"}
+    for name in set(config["programs"]["shaders"]) - set(shading["program"].values()):
+        del config["programs"]["shaders"][name]  # nothing may be there that nothing runs
+    line = r.choice([1, 1, 2]) * config["memory"]["line_bytes"]
+    ways = r.choice([1, 2, 4])
+    shading["data_cache"] = {"bytes": line * ways * r.choice([0, 1, 2, 7]), "line_bytes": line, "ways": ways,
+                             "latency_cycles": r.choice([1, 2, 9])}
+    shading["translation"] = {"page_bytes": r.choice([0, 4096, 65536, 1 << 21]), "entries": r.choice([1, 2, 8])}
+
+
+def draw_any_hit(r, config):
+    """Leaves whose any-hit calls go to shader workers."""
+    config["scene"].update(builtin="foliage", triangles=r.choice([20, 60]))
+    config["testers"]["any_hit"] = "shader"
+    shading = config["shading"]
+    shading["cycles_per_any_hit"] = r.choice([0, 3, 40])
+    if "program" in shading:
+        lines = [line for line in DrawnProgram(r).lines if not line.startswith("trace")]
+        config["programs"]["shaders"]["calls"] = {"program": lines or ["load a, 1"]}
+        shading["program"]["any_hit"] = r.choice(["calls", "calls", "built_in"])
+        if shading["program"]["any_hit"] != "calls":
+            del config["programs"]["shaders"]["calls"]
 
 
 def draw(seed, index):
@@ -206,6 +227,10 @@ def draw(seed, index):
     own = random.Random(seed * 1000003 + index + 2)
     if own.random() < 0.3:
         draw_programs(own, config)
+    elif own.random() < 0.4:
+        memory["surfaces"] = "memory"
+    if scene["builtin"] == "terrain" and own.random() < 0.5:
+        draw_any_hit(own, config)
     if r.random() < 0.25:
         scene["sky"] = {"file": str(SKY_MAP), "rotation": pick([0, 75])}
         memory["sky_map"] = pick(["free", "memory", "memory"])

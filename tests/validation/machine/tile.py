@@ -23,7 +23,13 @@ class Control:
         self.record = ceil_div(64, link["bytes_per_cycle"])
         self.ids = SideWire(clock, config, self.latency)
         self.new_rays, self.completed = self.ids.channel, Channel(clock)
+        self.questions, self.answers = SideWire(clock, config, self.latency), SideWire(clock, config, self.latency)
         self.free_at = 0
+
+    def ask(self, rays, calls, now):
+        """Any-hit calls of rays go to a shader worker."""
+        if calls:
+            self.questions.send(4 * len(rays) + 16 * len(calls), now, (rays, calls))
 
     def complete(self, rays, now):
         self.free_at = max(self.free_at, now) + len(rays) * self.record
@@ -86,6 +92,11 @@ class Tile(Issues, Tests, Travel, Window):
         for context in self.contexts:
             if context.phase == STARTING and context.at <= now:
                 self.start(context, now)
+        while self.control.answers.channel.ready(now):
+            rays = self.control.answers.channel.take()
+            for ray in rays:
+                ray.pending -= 1
+            self.hand_over([ray for ray in rays if ray.pending == 0])
         while self.control.new_rays.ready(now):
             (self.groups if self.travel else self.admission).append(self.control.new_rays.take())
         again = True

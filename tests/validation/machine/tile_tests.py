@@ -27,6 +27,8 @@ class Tests:
         context.packet, context.slots, context.has_data = packet, [packet.rays[i].slot for i in members], has_data
         context.rays = [packet.rays[i] for i in members]
         context.tests = self.resource.test(packet, members)
+        context.asking = [ray for ray in context.rays if ray.asked]
+        context.calls = [call for ray in context.asking for call in ray.take_calls()]
         if not self.topology.bus or packet.owner == self.number:
             packet.answered += len(members)
         context.completed, self.resource.completed[:] = list(self.resource.completed), []
@@ -95,6 +97,7 @@ class Tests:
             if context.phase == COMPUTING or context.loaded:
                 self.shapes.release(context.user, now)
             context.phase = FREE
+            self.control.ask(context.asking, context.calls, now)
             self.hand_over(context.completed)
             if packet.owner == self.number and (self.own_last or not self.travels(packet)):
                 entries = self.read_at_owner(packet)

@@ -168,7 +168,8 @@ class Ordered(Spread):
             packet.next[i] = self.next_of(ray)
             if packet.next[i] is None:
                 ray.pending -= 1
-                complete(ray)
+                if ray.pending == 0:
+                    complete(ray)
             elif self.by_block:
                 number, entry, below = packet.next[i]
                 ray.at = number, below

@@ -30,6 +30,8 @@ class Ray:
         self.name = tuple(fact["name"])
         self.shadow = fact["shadow"]
         self.boxes, self.triangles, self.candidates = fact["boxes"], fact["triangles"], fact["candidates"]
+        self.calls = fact.get("calls", {})
+        self.asked = []  # any-hit calls of the present visit
         self.lookups, self.products = fact.get("lookups", 0), fact.get("products", 0)
         self.t = float("inf") if fact["range"] is None else fact["range"]
         self.done = False
@@ -38,6 +40,10 @@ class Ray:
         self.kept = set()  # instances for which its copy in model space is kept
         self.stack = []    # ordered traversal
         self.at = 0, 0     # ... by blocks of memory: its node and that one's depth
+
+    def take_calls(self):
+        calls, self.asked = self.asked, []
+        return calls
 
     def meet_boxes(self, node, lanes):
         """The children of `node` that it hits, with its entries: [(lane, entry)]."""
@@ -50,6 +56,10 @@ class Ray:
         for lane in lanes:
             entry = self.candidates[str(node.number)][lane]
             refined += entry is not None and entry <= self.t
+            call = self.calls[str(node.number)][lane]
+            if call is not None and call["t"] <= self.t:
+                self.pending += not self.asked
+                self.asked.append(call)
             t = self.triangles[str(node.number)][lane]
             if t is not None and t <= self.t:
                 self.t = t

@@ -7,13 +7,18 @@
 
 namespace carousel::ringbus::cycle {
 
-/// Names the read of a program: when its data comes, the register is filled.
+/// Names the read of a shader worker. When its data comes, a register of a vector is filled, or a line of the worker's
+/// data cache, or its walker goes on.
 struct ProgramRead {
+  enum class To : std::uint8_t { kRegister, kCache, kWalker };
+
   std::uint32_t worker = 0, vector = 0;
   std::uint8_t reg = 0;
+  To to = To::kRegister;
+  std::uint64_t address = 0;  ///< of the line, for kCache
 };
 
-/// Where programs read materials, vertices and texels.
+/// Where programs read materials, vertices and texels, and walkers pages.
 class ProgramMemory {
  public:
   virtual ~ProgramMemory() = default;

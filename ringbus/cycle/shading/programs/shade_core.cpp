@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "ringbus/cycle/shading/programs/data_lines.h"
+
 namespace carousel::ringbus::cycle {
 
 namespace {
@@ -13,17 +15,6 @@ using Counts = ShadeProgramCounts;
 constexpr std::array<std::uint64_t Counts::*, kOpClasses> kByClass{&Counts::simple, &Counts::product, &Counts::divide,
                                                                    &Counts::branch, &Counts::read,    &Counts::texture,
                                                                    &Counts::trace};
-
-/// Makes the reads those of the lines in which they lie, each once, in order.
-void by_line(std::vector<DataRead>& reads, std::uint64_t line_bytes) {
-  std::vector<DataRead> lines;
-  for (const DataRead& read : reads)
-    for (std::uint64_t line = read.offset / line_bytes; line * line_bytes < read.offset + read.bytes; ++line)
-      lines.push_back({line * line_bytes, static_cast<std::uint32_t>(line_bytes)});
-  std::sort(lines.begin(), lines.end());
-  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
-  reads = std::move(lines);
-}
 
 }  // namespace
 
@@ -44,7 +35,9 @@ void ShadeCore::begin(std::size_t at, std::vector<Ray>&& rays, Cycle now) {
     }
     v.runs[run - 1].push_back(i);
   }
-  if (v.rays.front().kind != kCameraKind) {
+  const std::uint32_t kind = v.rays.front().kind;
+  if (kind == kAnyHitKind) counts_.any_hit_calls += v.rays.size();
+  if (kind != kAnyHitKind && kind != kCameraKind) {
     ++vector_counts_.vectors;
     vector_counts_.rays += v.rays.size();
     vector_counts_.runs += v.runs.size();
@@ -201,7 +194,7 @@ std::uint32_t ShadeCore::ask(std::size_t at, const Instruction& i, Cycle now, Pr
   }
   if (memory == nullptr) return 0;
   by_line(reads, memory->line_bytes());
-  const ProgramRead by{worker_, static_cast<std::uint32_t>(at), i.d};
+  const ProgramRead by{.worker = worker_, .vector = static_cast<std::uint32_t>(at), .reg = i.d};
   for (const DataRead& read : reads) memory->read(what, read, by, now);
   counts_.data_reads += reads.size();
   return static_cast<std::uint32_t>(reads.size());

@@ -11,6 +11,7 @@
 #include "core/program/shade_programs.h"
 #include "core/statistics/shading_counts.h"
 #include "core/types/workload.h"
+#include "ringbus/cycle/shading/programs/data_path.h"
 #include "ringbus/cycle/shading/programs/shade_core.h"
 
 namespace carousel::ringbus::cycle {
@@ -21,13 +22,28 @@ class ShadeCores {
   /// `vectors` of a worker. Keeps a reference to the workload.
   ShadeCores(const ShadingConfig& shading, std::shared_ptr<const ShadePrograms> programs, std::size_t workers,
              std::size_t vectors, const Workload& workload)
-      : workload_(workload), programs_(std::move(programs)), vectors_(vectors), held_(workers) {
+      : workload_(workload),
+        programs_(std::move(programs)),
+        cache_(shading.data_cache),
+        pages_(shading.translation),
+        vectors_(vectors),
+        held_(workers) {
     for (std::uint32_t w = 0; w < workers; ++w)
       cores_.emplace_back(*programs_, shading.instruction_cache, w, vectors_, static_cast<std::size_t>(shading.lanes));
   }
 
-  void read_through(ProgramMemory& memory) { memory_ = &memory; }
-  void answer(const ProgramRead& read, Cycle now) { cores_[read.worker].answer(read, now); }
+  void read_through(ProgramMemory& memory) {
+    memory_ = &memory;
+    if (cache_.bytes == 0 && pages_.page_bytes == 0) return;
+    for (std::uint32_t w = 0; w < cores_.size(); ++w)
+      paths_.push_back(std::make_unique<DataPath>(cache_, pages_, w, memory));
+  }
+  void answer(const ProgramRead& read, Cycle now) {
+    if (read.to == ProgramRead::To::kRegister)
+      cores_[read.worker].answer(read, now);
+    else
+      paths_[read.worker]->take(read, now);
+  }
 
   /// A vector of completed rays begins.
   void begin(std::uint32_t place, const HitBatch& vector, Cycle now) {
@@ -37,6 +53,13 @@ class ShadeCores {
   }
   void begin_camera_rays(std::uint32_t place, std::size_t count, Cycle now) {
     begin(place, std::vector<ShadeCore::Ray>(count, ShadeCore::Ray{kCameraKind}), now);
+  }
+  /// True if any-hit calls run a program.
+  bool answers_any_hit() const { return programs_->any_hit; }
+  void begin_any_hit(std::uint32_t place, const HitBatch& calls, Cycle now) {
+    std::vector<ShadeCore::Ray> rays;
+    for (const RayResult& call : calls) rays.push_back({kAnyHitKind, workload_.any_hit_facts(call)});
+    begin(place, std::move(rays), now);
   }
   /// Another job, of constant time, which holds up all vectors of its worker. Returns its end.
   Cycle occupy(std::uint32_t place, Cycle cycles, Cycle now) {
@@ -51,15 +74,14 @@ class ShadeCores {
   /// Issues what can be issued now; calls on_end(place) for the vectors that have ended.
   template <class OnEnd>
   void step(Cycle now, OnEnd&& on_end) {
-    for (std::size_t w = 0; w < cores_.size(); ++w) {
-      ended_.clear();
-      cores_[w].step(now, memory_, ended_);
-      for (const std::size_t at : ended_) on_end(static_cast<std::uint32_t>(w * vectors_ + at));
-    }
+    do {
+      step_once(now, on_end);
+    } while (std::ranges::any_of(paths_, [now](const auto& path) { return path->next() <= now; }));
   }
   Cycle next() const {
     Cycle first = kNever;
     for (const ShadeCore& core : cores_) first = std::min(first, core.next());
+    for (const auto& path : paths_) first = std::min(first, path->next());
     return first;
   }
 
@@ -82,6 +104,7 @@ class ShadeCores {
       counts.programs.instruction_bytes += core.instruction_bytes();
       counts.vectors += core.vectors();
     }
+    for (const auto& path : paths_) counts.data += path->counts();
     counts.busy = busy_;
   }
 
@@ -91,6 +114,16 @@ class ShadeCores {
     Cycle since = 0;
   };
 
+  template <class OnEnd>
+  void step_once(Cycle now, OnEnd&& on_end) {
+    for (std::size_t w = 0; w < cores_.size(); ++w) {
+      ended_.clear();
+      DataPath* const path = paths_.empty() ? nullptr : paths_[w].get();
+      if (path != nullptr) path->step(now, [&](const ProgramRead& read) { cores_[w].answer(read, now); });
+      cores_[w].step(now, path != nullptr ? path : memory_, ended_);
+      for (const std::size_t at : ended_) on_end(static_cast<std::uint32_t>(w * vectors_ + at));
+    }
+  }
   void begin(std::uint32_t place, std::vector<ShadeCore::Ray>&& rays, Cycle now) {
     hold(place, now);
     cores_[place / vectors_].begin(place % vectors_, std::move(rays), now);
@@ -102,9 +135,12 @@ class ShadeCores {
 
   const Workload& workload_;
   std::shared_ptr<const ShadePrograms> programs_;
+  DataCacheConfig cache_;
+  TranslationConfig pages_;
   std::size_t vectors_;
   std::vector<ShadeCore> cores_;
-  std::vector<Held> held_;  // by worker
+  std::vector<std::unique_ptr<DataPath>> paths_;  // by worker; none: reads go to memory
+  std::vector<Held> held_;                        // by worker
   ProgramMemory* memory_ = nullptr;
   std::vector<std::size_t> ended_;  // scratch
   Cycle busy_ = 0;                  // worker-cycles in which a worker held anything, of times that are over

@@ -35,10 +35,8 @@ void TestContexts::begin(std::size_t place, PacketId id, Cycle now, Cycle at, bo
   context.places = places_.of(parts_.resource.tested());
   if (parts_.tester.distributor() != nullptr)
     context.results.slots.assign(parts_.resource.tested().begin(), parts_.resource.tested().end());
-  for (const AnyHitCall& call : outcome.any_hit_calls) {
-    context.question.slots.push_back(call.slot);
-    context.question.times += call.times;
-  }
+  context.question.slots.assign(outcome.any_hit_slots.begin(), outcome.any_hit_slots.end());
+  context.question.calls.assign(outcome.any_hit_calls.begin(), outcome.any_hit_calls.end());
   parts_.completions.in_test().begin(parts_.resource.tested(), context.tested);
   context.completed.swap(parts_.resource.completed());
   context.freed_slots.swap(parts_.resource.freed_slots());

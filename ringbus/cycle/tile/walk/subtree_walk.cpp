@@ -7,11 +7,7 @@ namespace carousel::ringbus::cycle {
 namespace {
 
 accel::RayMembers one_of(const accel::RayMembers& members, std::size_t i) {
-  return {members.records, members.slots + i, 1, members.culls};
-}
-
-std::uint8_t* calls_of(const accel::RayMembers& members, std::size_t i) {
-  return members.any_hit_calls == nullptr ? nullptr : members.any_hit_calls + i;
+  return {members.records, members.slots + i, 1, members.culls, members.any_hit_calls};
 }
 
 }  // namespace
@@ -26,7 +22,7 @@ void SubtreeWalk::trace(accel::NodeKey from, const accel::RayMembers& members, I
   begin();
   for (std::size_t i = 0; i < members.count; ++i) {
     walk_.start(from);
-    walk_ray(one_of(members, i), calls_of(members, i), counts);
+    walk_ray(one_of(members, i), counts);
   }
 }
 
@@ -35,20 +31,18 @@ void SubtreeWalk::trace_treelets(std::span<const accel::NodeKey> from, const acc
   begin();
   for (std::size_t i = 0; i < members.count; ++i) {
     walk_.start(from[i], accel_.pieces.get());
-    walk_ray(one_of(members, i), calls_of(members, i), counts);
+    walk_ray(one_of(members, i), counts);
     for (const NextNode& exit : walk_.exits()) exits.push_back({static_cast<std::uint32_t>(i), exit});
   }
 }
 
-void SubtreeWalk::walk_ray(const accel::RayMembers& ray, std::uint8_t* any_hit_calls, IntersectionCounts& counts) {
+void SubtreeWalk::walk_ray(const accel::RayMembers& ray, IntersectionCounts& counts) {
   const RayRecord& record = ray.records[*ray.slots];
   while (const std::optional<accel::NodeKey> key = walk_.next(record)) {
     IntersectionCounts tests = walk_.test(accel_, *key, ray);
     ways_.steps.push_back({*key, ray_tests(tests)});
     // One inversion serves all rays of a visit.
     if (tests.inversions > 0 && !inverted_.insert(key->instance).second) tests.inversions = tests.full_inversions = 0;
-    if (any_hit_calls != nullptr)
-      *any_hit_calls = static_cast<std::uint8_t>(std::min<std::uint64_t>(255, *any_hit_calls + tests.any_hit_calls));
     counts += tests;
   }
   ways_.ends.push_back(static_cast<std::uint32_t>(ways_.steps.size()));

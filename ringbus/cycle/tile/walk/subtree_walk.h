@@ -42,7 +42,7 @@ class SubtreeWalk final : public SubtreeTracer {
 
  private:
   void begin();
-  void walk_ray(const accel::RayMembers& ray, std::uint8_t* any_hit_calls, IntersectionCounts& counts);
+  void walk_ray(const accel::RayMembers& ray, IntersectionCounts& counts);
 
   const accel::Accel& accel_;
   WalkSteps ways_;

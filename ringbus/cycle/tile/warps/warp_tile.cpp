@@ -182,10 +182,12 @@ void WarpTile::help(std::span<const std::uint32_t> slots, std::uint64_t idle, st
 IntersectionCounts WarpTile::test(std::uint32_t slot, accel::NodeKey strip, Cycle now) {
   Ray& ray = rays_[slot];
   const std::uint64_t before = ray.walk.stack_bytes().held;
-  const IntersectionCounts counts =
-      ray.walk.test(accel_, strip, {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr});
+  std::vector<AnyHitCall> calls;
+  const IntersectionCounts counts = ray.walk.test(
+      accel_, strip,
+      {store_.records(), &slot, 1, statistics_ ? sink_.cull_counts() : nullptr, any_hit_.on() ? &calls : nullptr});
   ended_.stacked(before, ray.walk);
-  if (any_hit_.on()) ray.calls_any_hit += counts.any_hit_calls;
+  for (const AnyHitCall& call : calls) ray.calls.push_back(AnyHitHold::completed_at(call));
   if (follows(slot)) [[unlikely]] {
     note(RayFact::Kind::kFetched, ray.waits_since, now, strip);
     ray.waits_since = now;
@@ -205,8 +207,8 @@ void WarpTile::tested(std::uint32_t slot, accel::NodeKey strip, Cycle now) {
   }
   if (--ray.in_test > 0) return;
   registers_.spill(slot, ray.walk, now);
-  if (const std::uint64_t times = std::exchange(ray.calls_any_hit, 0); times > 0) {
-    AnyHitQuestion question{{slot}, times};
+  if (!ray.calls.empty()) {
+    AnyHitQuestion question{{slot}, std::exchange(ray.calls, {})};
     any_hit_.send(question, now);
   } else {
     lane_ends_step(slot);

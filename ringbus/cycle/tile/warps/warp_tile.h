@@ -21,6 +21,7 @@
 #include "ringbus/cycle/tile/warps/warp_forming.h"
 #include "ringbus/cycle/tile/warps/warp_log.h"
 #include "ringbus/protocol/machine.h"
+#include "ringbus/resource/visit/any_hit_hold.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -66,7 +67,7 @@ class WarpTile final : public ResourceAgent {
     accel::NodeKey strip;  // its next, where rays are packed
     std::uint32_t warp = kNone, lane = 0;
     std::uint32_t in_test = 0;  // strips of this step that have not been tested
-    std::uint64_t calls_any_hit = 0;
+    HitBatch calls{};           // any-hit calls of this step
     Cycle waits_since = 0;
     bool done = false;  // it only keeps its lane
   };
