@@ -32,73 +32,9 @@ bool same_primitives(const scene::Mesh& a, const scene::Mesh& b) {
          same_spheres(a.spheres, b.spheres);
 }
 
-Aabb box_of(const Node& node) {
-  Aabb box;
-  for (int lane = 0; lane < node.count; ++lane) box.extend(child_box(node, lane));
-  return box;
-}
-
-void set_box(Node& node, int lane, const Aabb& box) {
-  for (int axis = 0; axis < 3; ++axis) {
-    node.plane[axis][lane] = box.lo[axis];
-    node.plane[axis + 3][lane] = box.hi[axis];
-  }
-}
-
-/// The boxes and primitives of one mesh, from its leaves up.
-class MeshRefit {
- public:
-  MeshRefit(Accel& accel, const scene::Mesh& mesh, const scene::Opacity& opacity)
-      : accel_(accel), meshes_(mesh), mesh_(mesh), opacity_(opacity) {}
-
-  Aabb run(NodeRef ref) {
-    if (!ref.is_inner()) return leaf(ref);
-    Node& node = accel_.nodes[ref.node()];
-    Aabb whole;
-    for (int lane = 0; lane < node.count; ++lane) {
-      const Aabb box = run(node.child[lane]);
-      set_box(node, lane, box);
-      whole.extend(box);
-    }
-    return whole;
-  }
-
- private:
-  Aabb leaf(NodeRef ref) {
-    Aabb whole;
-    for (std::uint32_t i = 0; i < ref.blocks(); ++i) {
-      TriangleBlock& block = accel_.blocks[ref.first_block() + i];
-      std::array<std::uint32_t, kBlockTriangles> primitives{};
-      std::uint32_t count = 0;
-      while (count < kBlockTriangles && block.primitive[count] != kNoPrimitive) {
-        primitives[count] = block.primitive[count] & kPrimitiveMask;
-        whole.extend(box_of(primitives[count++]));
-      }
-      TriangleBlock moved;
-      fill_block(meshes_, opacity_, primitives.data(), count, moved);
-      block = moved;
-    }
-    return whole;
-  }
-  Aabb box_of(std::uint32_t primitive) const {
-    if (primitive >= mesh_.triangle_count()) {
-      const scene::Sphere& sphere = mesh_.spheres[primitive - mesh_.triangle_count()];
-      return box_around(sphere.center, sphere.reach());
-    }
-    Aabb box;
-    for (std::size_t k = 0; k < 3; ++k) box.extend(mesh_.positions[mesh_.indices[3 * std::size_t{primitive} + k]]);
-    return box;
-  }
-
-  Accel& accel_;
-  BlasMeshes meshes_;
-  const scene::Mesh& mesh_;
-  const scene::Opacity& opacity_;
-};
-
 /// The box of all that stands below a root, in its own space.
 Aabb box_below(const Accel& accel, NodeRef root, const scene::Mesh& mesh) {
-  if (root.is_inner()) return box_of(accel.nodes[root.node()]);
+  if (root.is_inner()) return node_box(accel.nodes[root.node()]);
   Aabb box;
   for (const std::uint32_t index : mesh.indices) box.extend(mesh.positions[index]);
   for (const scene::Sphere& sphere : mesh.spheres) box.extend(box_around(sphere.center, sphere.reach()));
@@ -113,13 +49,71 @@ void refit_top(Accel& accel) {
     for (int lane = 0; lane < node.count; ++lane) {
       const NodeRef child = node.child[lane];
       if (child.is_inner() && child.node() <= i) throw std::logic_error("a node stands behind its parent");
-      set_box(node, lane,
-              child.is_instance() ? accel.instances[child.instance_index()].world : box_of(accel.nodes[child.node()]));
+      set_child_box(
+          node, lane,
+          child.is_instance() ? accel.instances[child.instance_index()].world : node_box(accel.nodes[child.node()]));
     }
   }
 }
 
 }  // namespace
+
+Aabb primitive_box(const scene::Mesh& mesh, std::uint32_t primitive) {
+  if (primitive >= mesh.triangle_count()) {
+    const scene::Sphere& sphere = mesh.spheres[primitive - mesh.triangle_count()];
+    return box_around(sphere.center, sphere.reach());
+  }
+  Aabb box;
+  for (std::size_t k = 0; k < 3; ++k) box.extend(mesh.positions[mesh.indices[3 * std::size_t{primitive} + k]]);
+  return box;
+}
+
+Aabb node_box(const Node& node) {
+  Aabb box;
+  for (int lane = 0; lane < node.count; ++lane) box.extend(child_box(node, lane));
+  return box;
+}
+
+void set_child_box(Node& node, int lane, const Aabb& box) {
+  for (int axis = 0; axis < 3; ++axis) {
+    node.plane[axis][lane] = box.lo[axis];
+    node.plane[axis + 3][lane] = box.hi[axis];
+  }
+}
+
+void fill_leaf(Accel& accel, NodeRef leaf, const scene::Mesh& mesh, const scene::Opacity& opacity,
+               const std::uint32_t* primitives) {
+  const BlasMeshes meshes(mesh);
+  for (std::uint32_t i = 0, left = leaf.triangles(); i < leaf.blocks(); ++i) {
+    const std::uint32_t count = std::min<std::uint32_t>(left, kBlockTriangles);
+    TriangleBlock moved;
+    fill_block(meshes, opacity, primitives, count, moved);
+    accel.blocks[leaf.first_block() + i] = moved;
+    primitives += count;
+    left -= count;
+  }
+}
+
+Aabb refit_mesh(Accel& accel, NodeRef ref, const scene::Mesh& mesh, const scene::Opacity& opacity) {
+  Aabb whole;
+  if (!ref.is_inner()) {
+    std::array<std::uint32_t, kMaxLeafTriangles> primitives{};
+    for (std::uint32_t i = 0; i < ref.triangles(); ++i) {
+      primitives[i] =
+          accel.blocks[ref.first_block() + i / kBlockTriangles].primitive[i % kBlockTriangles] & kPrimitiveMask;
+      whole.extend(primitive_box(mesh, primitives[i]));
+    }
+    fill_leaf(accel, ref, mesh, opacity, primitives.data());
+    return whole;
+  }
+  Node& node = accel.nodes[ref.node()];
+  for (int lane = 0; lane < node.count; ++lane) {
+    const Aabb box = refit_mesh(accel, node.child[lane], mesh, opacity);
+    set_child_box(node, lane, box);
+    whole.extend(box);
+  }
+  return whole;
+}
 
 SceneChange change_of(const scene::Scene& before, const scene::Scene& after) {
   SceneChange out;
@@ -162,7 +156,7 @@ ChangedParts changed_parts(const Accel& accel, const scene::Scene& scene, const 
 }
 
 std::string refit(Accel& accel, const scene::Scene& after, const SceneChange& change, BvhConfig::Storage storage,
-                  Executor& executor) {
+                  Executor& executor, const UpdateMesh& update) {
   if (!change.other.empty()) return change.other;
   if (accel.baked_instances > 0) return "an instance with a singular transform stands in the world as triangles";
   std::vector<InstanceTransform> transforms(after.instances.size());
@@ -182,9 +176,14 @@ std::string refit(Accel& accel, const scene::Scene& after, const SceneChange& ch
   for (std::size_t i = 0; i < after.instances.size(); ++i)
     if (accel.instances[i].triangles > 0) roots.emplace(after.instances[i].mesh.value, accel.instances[i].root);
   executor.parallel_for(change.meshes.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t m = begin; m < end; ++m)
-      if (const auto root = roots.find(change.meshes[m]); root != roots.end())
-        MeshRefit(accel, after.meshes[change.meshes[m]], opacity).run(root->second);
+    for (std::size_t m = begin; m < end; ++m) {
+      const auto root = roots.find(change.meshes[m]);
+      if (root == roots.end()) continue;
+      if (update)
+        update(m, root->second, opacity);
+      else
+        refit_mesh(accel, root->second, after.meshes[change.meshes[m]], opacity);
+    }
   });
   std::unordered_map<std::uint32_t, Aabb> boxes;  // by mesh
   for (const auto& [mesh, root] : roots) boxes.emplace(mesh, box_below(accel, root, after.meshes[mesh]));
@@ -235,7 +234,7 @@ double surface_cost(const Accel& accel) {
   const auto visits_of = [&](NodeRef root) {
     const auto [place, is_new] = visits.emplace(root.bits(), root.is_inner() ? 1.0 : root.blocks());
     if (!is_new || !root.is_inner()) return place->second;
-    const double area = box_of(nodes[root.node()]).half_area();
+    const double area = node_box(nodes[root.node()]).half_area();
     if (area > 0) place->second = areas(root, area, [](std::uint32_t, double) { return 0.0; }) / area;
     return place->second;
   };
@@ -243,7 +242,7 @@ double surface_cost(const Accel& accel) {
   const NodeKey root = accel.root_key();
   if (root.instance != kNoInstance) return visits_of(root.ref);
   if (!root.ref.is_inner() || nodes[root.ref.node()].count == 0) return 0;
-  const double area = box_of(nodes[root.ref.node()]).half_area();
+  const double area = node_box(nodes[root.ref.node()]).half_area();
   return area > 0 ? areas(root.ref, area, instance_areas) / area : 0;
 }
 

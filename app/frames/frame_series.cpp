@@ -1,12 +1,16 @@
 #include "app/frames/frame_series.h"
 
+#include <algorithm>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "accel/builders/clusters.h"
 #include "accel/builders/refit.h"
 #include "app/build_report/experiment.h"
 #include "app/frames/frame_builder.h"
@@ -32,7 +36,9 @@ class FrameSeries {
         series_(*prepared.config().frames),
         interrupt_(interrupt),
         quiet_(quiet),
-        take_(take) {}
+        take_(take) {
+    cut();
+  }
 
   report::Report run() {
     report::Report report;
@@ -73,28 +79,73 @@ class FrameSeries {
     const accel::SceneChange change = accel::change_of(p_.scene, after);
     if (series_.update == FrameUpdate::kNone && !change.none()) refuse_motion(change, after, row);
     row.update = "kept";
-    row.why = series_.update == FrameUpdate::kRefit && !change.none()
-                  ? accel::refit(p_.accel, after, change, p_.config().bvh.storage, *make_executor(p_.threads))
-                  : "";
+    std::vector<accel::ClusterWork> work;
+    if (!change.none()) row.why = follow(after, change, work);
     p_.scene = std::move(after);
     if (change.none()) {  // the camera or a light may have moved
       renew_any_hit(p_);
       return;
     }
-    const bool refitted = series_.update == FrameUpdate::kRefit && row.why.empty();
-    row.update = refitted ? "refit" : "rebuild";
-    if (refitted)
-      renew_any_hit(p_);
-    else
+    const FrameUpdate update = row.why.empty() ? series_.update : FrameUpdate::kRebuild;
+    const bool anew = update == FrameUpdate::kRebuild;
+    row.update = enum_name(update);
+    if (anew) {
       rebuild(p_);
+      cut();
+    } else {
+      renew_any_hit(p_);
+    }
+    if (clusters_) row.clusters = clusters_of(work);
     rebuilt_.reset();
-    if (refitted) rebuilt_ = rebuild_beside(p_, row);
+    if (!anew) rebuilt_ = rebuild_beside(p_, row);
     if (!cycle()) return;
-    const BuilderFrame builder =
-        build_in_machine(p_, parts_of(p_.accel, change), refitted, interrupt_.token(), frame_.cached);
+    std::optional<DoneClusters> done;
+    if (update == FrameUpdate::kClusters) done.emplace(*clusters_, work);
+    const BuilderFrame builder = build_in_machine(p_, parts_of(p_.accel, change), update, done ? &*done : nullptr,
+                                                  interrupt_.token(), frame_.cached);
     updated_ = builder.complete;
     row.builder = builder.cost;
-    if (refitted) row.rebuild_cycles = rebuild_cycles(p_, *rebuilt_, parts_of(*rebuilt_, change), interrupt_.token());
+    if (anew) return;
+    const report::FrameUpdateCost other = rebuild_cost(p_, *rebuilt_, parts_of(*rebuilt_, change), interrupt_.token());
+    row.rebuild_cycles = other.cycles;
+    row.rebuild_bytes = other.bytes_read + other.bytes_written;
+  }
+
+  /// Cuts a structure that is new.
+  void cut() {
+    if (series_.update != FrameUpdate::kClusters) return;
+    std::optional<std::uint32_t> most;
+    if (series_.cluster_primitives) most = static_cast<std::uint32_t>(*series_.cluster_primitives);
+    clusters_ = accel::cut_clusters(p_.accel, p_.scene, most, most_dealt());
+  }
+
+  /// Clusters of a mesh for which the builder's store has room.
+  std::uint64_t most_dealt() const { return static_cast<std::uint64_t>(series_.builder.local_primitives); }
+
+  /// Brings the structure to a scene that moves, unless that is done by a rebuild. Returns why it cannot be.
+  std::string follow(const scene::Scene& after, const accel::SceneChange& change,
+                     std::vector<accel::ClusterWork>& work) {
+    const BvhConfig::Storage storage = p_.config().bvh.storage;
+    const std::unique_ptr<Executor> executor = make_executor(p_.threads);
+    if (series_.update == FrameUpdate::kRefit) return accel::refit(p_.accel, after, change, storage, *executor);
+    if (series_.update != FrameUpdate::kClusters) return "";
+    const int depth = p_.accel.max_depth;
+    std::string why =
+        accel::update_clusters(p_.accel, *clusters_, p_.scene, after, change, storage, most_dealt(), *executor, work);
+    if (p_.accel.max_depth > depth) renew_room(p_);
+    return why;
+  }
+
+  report::FrameClusters clusters_of(const std::vector<accel::ClusterWork>& work) const {
+    report::FrameClusters out;
+    out.count = clusters_->count();
+    out.bytes = ringbus::cycle::cluster_bytes(*clusters_);
+    for (const accel::ClusterWork& of_mesh : work) {
+      out.rebuilt += of_mesh.moved.size();
+      out.better += static_cast<std::uint64_t>(std::count(of_mesh.is_better.begin(), of_mesh.is_better.end(), true));
+      out.dealt_meshes += of_mesh.better_above;
+    }
+    return out;
   }
 
   /// What the builder has to do. A structure with flattened instances has moved as a whole.
@@ -110,10 +161,11 @@ class FrameSeries {
       what = fmt::format("mesh {} ('{}') has another shape", change.meshes.front(),
                          after.meshes[change.meshes.front()].name);
     if (what.empty()) what = fmt::format("instance {} stands elsewhere", change.instances.front());
-    throw ConfigError({{p_.located.positions.find("frames.update"), "frames.update",
-                        fmt::format("in frame {}, at {} s, {}, and the structure stays as it was built; expected refit "
-                                    "or rebuild, found none",
-                                    row.frame, row.time, what)}});
+    throw ConfigError(
+        {{p_.located.positions.find("frames.update"), "frames.update",
+          fmt::format("in frame {}, at {} s, {}, and the structure stays as it was built; expected refit, "
+                      "rebuild or clusters, found none",
+                      row.frame, row.time, what)}});
   }
 
   static void add(std::optional<report::Verify>& sum, const report::Verify& one) {
@@ -170,8 +222,9 @@ class FrameSeries {
   bool quiet_;
   const TakeFrame& take_;
   SeriesFrame frame_;
-  std::optional<accel::Accel> rebuilt_;  // of a refitted frame
-  bool updated_ = true;                  // the builder's work of the frame was not interrupted
+  std::optional<accel::TreeClusters> clusters_;  // with frames.update: clusters
+  std::optional<accel::Accel> rebuilt_;          // of a frame that is not built anew
+  bool updated_ = true;                          // the builder's work of the frame was not interrupted
   report::Frames rows_;
 };
 

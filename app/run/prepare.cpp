@@ -309,6 +309,10 @@ scene::Scene load_moment(Prepared& p, float seconds) {
 
 void rebuild(Prepared& p) {
   with_positions(p.located.positions, [&] { build_accel(p, nullptr); });
+  renew_room(p);
+}
+
+void renew_room(Prepared& p) {
   adapt_storage(p);
   require_room(p, false);
 }
@@ -389,12 +393,6 @@ Prepared prepare_config(const std::string& text, const std::string& name, const 
   require_one_frame(p);
   prepare_located(p, false);
   return p;
-}
-
-std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file) {
-  std::error_code ignored;
-  const std::filesystem::path beside = config_folder / file;
-  return std::filesystem::exists(beside, ignored) ? beside : std::filesystem::path(file);
 }
 
 }  // namespace carousel::app

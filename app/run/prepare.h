@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "accel/measure/structure_size.h"
@@ -77,6 +78,9 @@ scene::Scene load_moment(Prepared& prepared, float seconds);
 /// Gives a prepared scene, whose content has been replaced by that of another moment, a structure that is built anew.
 void rebuild(Prepared& prepared);
 
+/// Makes the storage of the machine large enough for a structure that has become deeper. Throws a ConfigError.
+void renew_room(Prepared& prepared);
+
 /// Lets the structure, which fits the scene, answer any-hit calls of it as it now is.
 void renew_any_hit(Prepared& prepared);
 
@@ -86,6 +90,10 @@ inline scene::View view_of(const Config& config) {
 }
 
 /// Path of a file that a configuration names: in the configuration's folder, or else in the working folder.
-std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file);
+inline std::filesystem::path find_beside(const std::filesystem::path& config_folder, const std::string& file) {
+  std::error_code ignored;
+  const std::filesystem::path beside = config_folder / file;
+  return std::filesystem::exists(beside, ignored) ? beside : std::filesystem::path(file);
+}
 
 }  // namespace carousel::app

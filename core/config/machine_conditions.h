@@ -157,6 +157,9 @@ inline constexpr Condition kSeveralFrames{[](const C& c, const S&) { return c.fr
 inline constexpr Condition kUpdates{
     [](const C& c, const S&) { return c.frames && c.frames->count > 1 && c.frames->update != FrameUpdate::kNone; },
     "the structure is built once"};
+inline constexpr Condition kClusters{
+    [](const C& c, const S&) { return c.frames && c.frames->count > 1 && c.frames->update == FrameUpdate::kClusters; },
+    "frames.update chooses no clusters"};
 
 inline constexpr Condition kPackets{[](const C& c, const S&) { return exchanges_packets(c); },
                                     "independent resources exchange no packets"};

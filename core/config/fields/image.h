@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/config/fields/field.h"
@@ -70,14 +71,20 @@ struct BuilderConfig {
   std::int64_t latency_cycles = 4;
   std::int64_t requests = 64;
   std::int64_t local_primitives = 1024;
+  enum class Asks : std::uint8_t { kMemory, kL2 } asks = Asks::kMemory;
 };
+template <>
+inline constexpr auto kEnumNames<BuilderConfig::Asks> = [] {
+  using enum BuilderConfig::Asks;
+  return names<BuilderConfig::Asks>({{kMemory, "memory"}, {kL2, "l2"}});
+}();
 
 /// How the structure follows a scene that moves.
-enum class FrameUpdate : std::uint8_t { kRefit, kRebuild, kNone };
+enum class FrameUpdate : std::uint8_t { kRefit, kRebuild, kClusters, kNone };
 template <>
 inline constexpr auto kEnumNames<FrameUpdate> = [] {
   using enum FrameUpdate;
-  return names<FrameUpdate>({{kRefit, "refit"}, {kRebuild, "rebuild"}, {kNone, "none"}});
+  return names<FrameUpdate>({{kRefit, "refit"}, {kRebuild, "rebuild"}, {kClusters, "clusters"}, {kNone, "none"}});
 }();
 
 /// A series of pictures of a scene that moves.
@@ -86,6 +93,7 @@ struct FramesConfig {
   std::int64_t first = 0;
   double step = 0.04;
   FrameUpdate update = FrameUpdate::kRefit;
+  std::optional<std::int64_t> cluster_primitives;  ///< absent: `auto`
   BuilderConfig builder;
 };
 
@@ -117,7 +125,12 @@ void describe(V& v, BuilderConfig& c) {
           "The cycles from the last box of a task into this pipeline to its result.");
   v.field("requests", c.requests, IntRange{1, 65536}, "lines", "The lines that it can wait for at a time.");
   v.field("local_primitives", c.local_primitives, IntRange{1, 1 << 24}, "primitives",
-          "A subtree of at most so many primitives is built in a store of its own, from one reading of them.");
+          "A subtree of at most so many primitives is built in a store of its own, from one reading of them. With "
+          "frames.update: clusters a mesh of more clusters than that has the nodes above them refitted.");
+  v.choice(
+      "asks", c.asks,
+      "The builder reads and writes lines of the memory, or asks the first L2 for them. What the builder leaves there "
+      "the rays find. Lines that stay there written (memory.l2_write: back) go to the memory before the first ray.");
 }
 
 template <class V>
@@ -131,8 +144,12 @@ void describe(V& v, FramesConfig& c) {
       "The time between pictures. Frame 0 shows the moment of scene.time or of scene.animation.time; a built-in scene "
       "without one begins at 0.");
   v.choice("update", c.update,
-           "For each further picture the structure keeps its nodes and gets new boxes, or is built anew, or stays as "
-           "it is; then nothing but the camera may move.");
+           "For each further picture the structure keeps its nodes and gets new boxes, or is built anew, or is renewed "
+           "in those clusters whose primitives have moved, or stays as it is; then nothing but the camera may move.");
+  v.field_or_auto(
+      "cluster_primitives", c.cluster_primitives, IntRange{1, 1 << 20}, "primitives",
+      "A cluster of a mesh is a largest subtree of at most so many primitives. With auto it is the least power "
+      "of two for which the mesh has at most frames.builder.local_primitives clusters.");
   v.section("builder", c.builder, "The unit that does this in the simulated machine, before the rays of a picture.");
 }
 

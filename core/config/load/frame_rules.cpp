@@ -8,6 +8,25 @@ namespace carousel::config {
 
 namespace {
 
+/// Refuses structures whose bytes would have other places or sizes if primitives changed theirs.
+void check_clusters(const Config& c, const RuleBreach& breach) {
+  const auto no = [&](bool wrong, const char* key, const std::string& message) {
+    if (wrong) breach(key, message + ", or frames.update: refit");
+  };
+  no(c.bvh.treelets.bytes > 0, "bvh.treelets.bytes",
+     fmt::format("an update of clusters hangs them below other nodes; expected 0, found {}", c.bvh.treelets.bytes));
+  no(c.bvh.mixed_triangles > 0, "bvh.mixed_triangles",
+     fmt::format("an update of clusters hangs leaves below other nodes; expected 0, found {}", c.bvh.mixed_triangles));
+  no(c.bvh.micromaps.states != BvhConfig::Micromaps::States::kNone, "bvh.micromaps.states",
+     fmt::format("an update of clusters puts primitives into other leaves; expected none, found {}",
+                 enum_name(c.bvh.micromaps.states)));
+  if (c.frames->cluster_primitives.value_or(1) > c.frames->builder.local_primitives)
+    breach("frames.cluster_primitives",
+           fmt::format("a cluster is built in the builder's store; expected at most frames.builder.local_primitives, "
+                       "which are {}, found {}",
+                       c.frames->builder.local_primitives, *c.frames->cluster_primitives));
+}
+
 /// Refuses structures that hold more than boxes, which nothing here updates, and what no unit is charged for.
 void check_update(const Config& c, const RuleBreach& breach) {
   const auto no = [&](bool wrong, const char* key, const std::string& message) {
@@ -22,11 +41,12 @@ void check_update(const Config& c, const RuleBreach& breach) {
   no(c.cull_planes.count > 0, "cull_planes.count",
      fmt::format("cull planes are not updated yet; expected 0, found {}", c.cull_planes.count));
   no(!c.bvh.file.empty(), "bvh.file", "its trees are those of one moment; expected no file");
-  if (c.frames->update == FrameUpdate::kRefit) {
+  if (c.frames->update != FrameUpdate::kRebuild) {
     no(c.bvh.leaves != BvhConfig::Leaves::kTriangles, "bvh.leaves",
        fmt::format("leaves of another kind have another size when they move; expected triangles, found {}",
                    enum_name(c.bvh.leaves)));
-    return;
+    if (c.frames->update == FrameUpdate::kRefit) return;
+    check_clusters(c, breach);
   }
   no(c.bvh.builder != BvhConfig::Builder::kSah, "bvh.builder",
      fmt::format("the builder of the machine divides meshes by their triangles; expected sah, found {}",
@@ -70,7 +90,7 @@ void check_frames(const Config& c, const RuleBreach& breach) {
     breach("scene.time", "a series of a file begins at a moment; expected scene.time or scene.animation beside frames");
   if (c.frames->count == 1) return;
   if (c.scene.builtin && c.frames->update == FrameUpdate::kNone && c.frames->step > 0)
-    breach("frames.update", fmt::format("the built-in scene {} moves; expected refit or rebuild, found none",
+    breach("frames.update", fmt::format("the built-in scene {} moves; expected refit, rebuild or clusters, found none",
                                         enum_name(*c.scene.builtin)));
   check_series(c, breach);
   if (c.frames->update != FrameUpdate::kNone) check_update(c, breach);

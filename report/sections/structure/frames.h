@@ -8,12 +8,44 @@
 
 namespace carousel::report {
 
+/// Use of the L2 that the builder asks.
+struct FrameUpdateL2 {
+  std::uint64_t lines = 0, hits = 0, written = 0, write_fetches = 0, drained = 0;
+};
+
+template <class V>
+void describe(V& v, const FrameUpdateL2& r) {
+  v.field("lines", r.lines, "lines", "lines that the builder asked for");
+  v.field("hits", r.hits, "lines", "those of them that were there");
+  v.field("written", r.written, "lines", "lines that it wrote");
+  v.field("write_fetches", r.write_fetches, "lines",
+          "those of which a part was written, fetched from the memory first");
+  v.field("drained", r.drained, "lines",
+          "those that stayed there written, and went to the memory before the first ray");
+}
+
+/// The clusters of meshes, and their part in an update.
+struct FrameClusters {
+  std::uint64_t count = 0, rebuilt = 0, better = 0, dealt_meshes = 0, bytes = 0;
+};
+
+template <class V>
+void describe(V& v, const FrameClusters& r) {
+  v.field("count", r.count, "clusters", "clusters of all meshes");
+  v.field("rebuilt", r.rebuilt, "clusters", "those with a primitive that has moved, in which the tree is sought anew");
+  v.field("better", r.better, "clusters", "those of them in which it has less area than a refit, and is taken");
+  v.field("dealt_meshes", r.dealt_meshes, "meshes",
+          "meshes whose clusters were hung anew below the nodes above them, since that has less area than a refit");
+  v.field("bytes", r.bytes, "bytes", "bytes that the builder keeps of clusters beside the structure");
+}
+
 /// The simulated machine spent this on bringing the structure to a frame.
 struct FrameUpdateCost {
   std::uint64_t cycles = 0;
   std::uint64_t levels = 0, boxes = 0;
   std::uint64_t bytes_read = 0, bytes_written = 0, top_bytes = 0;
   std::uint64_t lines_dropped = 0;
+  std::optional<FrameUpdateL2> l2{};
   std::optional<double> joules{};
 };
 
@@ -22,11 +54,17 @@ void describe(V& v, const FrameUpdateCost& r) {
   v.field("cycles", r.cycles, "cycles", "time of the builder, before the first ray of the frame");
   v.field("levels", r.levels, "steps", "steps of its work of which each waits for all writes of the one before");
   v.field("boxes", r.boxes, "boxes", "boxes that it added to others, or sorted into bins");
-  v.field("bytes_read", r.bytes_read, "bytes", "bytes of lines that it read from the memory");
-  v.field("bytes_written", r.bytes_written, "bytes", "bytes of lines that it wrote to the memory");
-  v.field("top_bytes", r.top_bytes, "bytes", "part of both that is the top level's; the rest is that of meshes");
-  v.field("lines_dropped", r.lines_dropped, "lines", "lines of shared caches that it made out of date");
-  v.field("joules", r.joules, "J", "energy of its bytes of the memory, its store and its boxes, with energy.profile");
+  v.field("bytes_read", r.bytes_read, "bytes", "bytes of lines that it read from the memory, or an L2 for it");
+  v.field("bytes_written", r.bytes_written, "bytes", "bytes of lines that it wrote to the memory, or an L2 for it");
+  v.field(
+      "top_bytes", r.top_bytes, "bytes",
+      "bytes of lines that it asked for or wrote for the top level; without an L2 a part of both, and the rest is that "
+      "of meshes");
+  v.field("lines_dropped", r.lines_dropped, "lines",
+          "lines of shared caches that it, or what it reads, made out of date");
+  v.section("l2", r.l2, "use of the L2 that it asks (frames.builder.asks: l2)");
+  v.field("joules", r.joules, "J",
+          "energy of its bytes of the memory and of the L2 that it asks, its store and its boxes, with energy.profile");
 }
 
 /// A picture of the series.
@@ -42,7 +80,8 @@ struct Frame {
   std::optional<double> surface_cost_rebuilt{};
   std::optional<std::uint64_t> depth_first_tests{}, depth_first_tests_rebuilt{};
   std::optional<FrameUpdateCost> builder{};
-  std::optional<std::uint64_t> rebuild_cycles{}, cycles_rebuilt{};
+  std::optional<FrameClusters> clusters{};
+  std::optional<std::uint64_t> rebuild_cycles{}, rebuild_bytes{}, cycles_rebuilt{};
   std::optional<bool> rebuild_pays{};
   Digest digest{};
 };
@@ -52,8 +91,9 @@ void describe(V& v, const Frame& r) {
   v.field("frame", r.frame, "frame", "number of the frame");
   v.field("time", r.time, "s", "moment that it shows; scene.time with this value shows it by itself");
   v.field("update", r.update, "",
-          "how the structure came to be that of the frame: built before the run, refit, rebuild, or kept");
-  v.field("why", r.why, "", "why it was rebuilt although frames.update is refit; empty if it was not");
+
+          "how the structure came to be that of the frame: built before the run, refit, rebuild, clusters, or kept");
+  v.field("why", r.why, "", "why it was rebuilt although frames.update is another; empty if it was not");
   v.field("cycles", r.cycles, "cycles", "time of its rays, without the update before them (cycle)");
   v.field("rays", r.rays, "rays", "rays of the frame");
   v.field("box_tests", r.box_tests, "tests", "tests of a ray against a box");
@@ -63,15 +103,17 @@ void describe(V& v, const Frame& r) {
   v.field("surface_cost", r.surface_cost, "nodes",
           "nodes and blocks that a line through the scene's box meets on average, the top level with them");
   v.field("surface_cost_rebuilt", r.surface_cost_rebuilt, "nodes",
-          "that of a structure that is built for the frame, where this one was refitted");
+          "that of a structure that is built for the frame, where this one was not");
   v.field("depth_first_tests", r.depth_first_tests, "tests",
           "tests of boxes and primitives of the frame's rays, each traced by itself, depth first, in the refitted "
           "structure");
   v.field("depth_first_tests_rebuilt", r.depth_first_tests_rebuilt, "tests",
           "those in a structure that is built for the frame");
   v.section("builder", r.builder, "cost of the update (cycle)");
+  v.section("clusters", r.clusters, "clusters of the structure, with frames.update: clusters");
   v.field("rebuild_cycles", r.rebuild_cycles, "cycles",
-          "time in which the builder would have rebuilt what it refitted (cycle)");
+          "time in which the builder would have rebuilt what it refitted or renewed (cycle)");
+  v.field("rebuild_bytes", r.rebuild_bytes, "bytes", "bytes that it would have read and written for that (cycle)");
   v.field("cycles_rebuilt", r.cycles_rebuilt, "cycles",
           "time of the frame's rays in a rebuilt structure, which no cache holds yet; looked at where they might spare "
           "more than the rebuild costs, if their time went down as their tests do (cycle)");

@@ -10,6 +10,8 @@
 
 #include "core/config/fields/image.h"
 #include "core/config/fields/memory.h"
+#include "core/statistics/cache_counts.h"
+#include "core/statistics/memory_counts.h"
 #include "ringbus/cycle/builder/builder_work.h"
 #include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/results/dram_use.h"
@@ -24,7 +26,9 @@ struct BuilderUse {
   Cycle cycles = 0;  ///< until all that it wrote is in memory
   std::uint64_t levels = 0, boxes = 0;
   std::uint64_t lines_read = 0, lines_written = 0, top_lines = 0;
-  std::optional<DramUse> dram{};  ///< with banks
+  MemoryCounts memory{};            ///< what the memory has moved for it
+  std::optional<CacheCounts> l2{};  ///< with frames.builder.asks: l2
+  std::optional<DramUse> dram{};    ///< with banks
 };
 
 /// The unit that builds: it asks the memory for lines, adds up boxes and writes lines, level by level. It has a port of
@@ -33,7 +37,8 @@ struct BuilderUse {
 /// level reads comes to the memory behind it.
 class BuilderUnit final : public Agent {
  public:
-  BuilderUnit(const BuilderConfig& config, const MemoryConfig& memory, const BuilderWork& work,
+  /// Requests are so long on their way to the memory or the L2.
+  BuilderUnit(const BuilderConfig& config, const MemoryConfig& memory, const BuilderWork& work, Cycle latency,
               Channel<std::uint64_t>& requests, Channel<std::uint64_t>& answers);
 
   Cycle next() const override;
@@ -57,9 +62,11 @@ class BuilderUnit final : public Agent {
   bool may_send() const;
   void send(std::uint64_t request);
   std::vector<std::uint64_t> lines_of(const std::vector<ShapeSpan>& spans) const;
+  std::vector<std::uint64_t> writes_of(const BuilderTask& task) const;
   const BuilderTask& task(std::size_t number) const { return work_.levels[level_][number]; }
 
   std::uint64_t port_rate_, box_rate_, line_bytes_;
+  bool asks_l2_;
   std::size_t most_requests_;
   Cycle box_latency_, latency_;  // of the pipeline, and of requests on their way
   const BuilderWork& work_;
@@ -76,9 +83,11 @@ class BuilderUnit final : public Agent {
   BuilderUse use_;
 };
 
-/// Does the work alone with a memory of the machine, one if it has several. Throws SimulationError if its counts and
-/// those of the memory differ.
+/// Does the work alone with a memory of the machine, one if it has several; with `asks: l2` through an L2 before it
+/// that holds the lines of `cached`, oldest first, and at the end others. Those that it wrote are then in the memory;
+/// if it was stopped the L2 holds none. Throws SimulationError if its counts, and those of the L2 and the memory,
+/// differ.
 BuilderUse run_builder(const BuilderConfig& config, const MemoryConfig& memory, std::int64_t clock_mhz,
-                       const BuilderWork& work, const std::stop_token& stop);
+                       const BuilderWork& work, const std::stop_token& stop, std::vector<std::uint64_t>& cached);
 
 }  // namespace carousel::ringbus::cycle

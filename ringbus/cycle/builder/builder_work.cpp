@@ -4,6 +4,8 @@
 #include <bit>
 #include <unordered_map>
 
+#include "core/config/fields/image.h"
+
 namespace carousel::ringbus::cycle {
 
 namespace {
@@ -13,8 +15,9 @@ using accel::NodeRef;
 constexpr std::uint32_t kPositionBytes = 36;  // three vertices
 constexpr std::uint32_t kMatrixBytes = 48;
 constexpr std::uint32_t kRecordBytes = BuilderConfig::kRecordBytes;
-constexpr std::uint64_t kChunk = 64;   // primitives of a task that streams
-constexpr std::uint64_t kCorners = 8;  // of an instance's box, which are brought into the world
+constexpr std::uint32_t kNumberBytes = 4;  // of a primitive of a cluster
+constexpr std::uint64_t kChunk = 64;       // primitives of a task that streams
+constexpr std::uint64_t kCorners = 8;      // of an instance's box, which are brought into the world
 
 /// Where the builder finds what it reads beside the structure.
 class Sources {
@@ -32,6 +35,21 @@ class Sources {
     top_records_ = records_ + primitives * kRecordBytes;
     micromaps_ = behind(top_records_, accel.instances.size() * kRecordBytes);
   }
+  Sources(const accel::Accel& accel, const ShapeMemory& memory, const accel::TreeClusters& clusters)
+      : Sources(accel, memory) {
+    std::uint64_t count = 0, primitives = 0;
+    for (const accel::MeshClusters& mesh : clusters.meshes) {
+      first_cluster_.push_back(count);
+      for (const accel::Cluster& cluster : mesh.clusters) {
+        first_number_.push_back(primitives);
+        primitives += cluster.primitives;
+        ++count;
+      }
+    }
+    bits_ = micromaps_;  // where there are clusters there are none
+    cluster_records_ = bits_ + (count + 511) / 512 * 64;
+    numbers_ = cluster_records_ + count * kRecordBytes;
+  }
 
   /// Number of the first primitive of the mesh below a root among all of them.
   std::uint64_t first(NodeRef root) const { return first_.at(root.bits()); }
@@ -45,6 +63,19 @@ class Sources {
     return {(top ? top_records_ : records_) + first * kRecordBytes, static_cast<std::uint32_t>(count * kRecordBytes)};
   }
 
+  /// Of a number of clusters of a mesh; meshes and clusters are those of TreeClusters.
+  ShapeSpan cluster_bits(std::size_t mesh, std::uint64_t count) const {
+    const std::uint64_t first = first_cluster_[mesh] / 8, end = (first_cluster_[mesh] + count + 7) / 8;
+    return {bits_ + first, static_cast<std::uint32_t>(end - first)};
+  }
+  ShapeSpan cluster_records(std::size_t mesh, std::uint64_t first, std::uint64_t count) const {
+    return {cluster_records_ + (first_cluster_[mesh] + first) * kRecordBytes,
+            static_cast<std::uint32_t>(count * kRecordBytes)};
+  }
+  ShapeSpan numbers(std::size_t mesh, std::uint64_t cluster, std::uint32_t primitives) const {
+    return {numbers_ + first_number_[first_cluster_[mesh] + cluster] * kNumberBytes, primitives * kNumberBytes};
+  }
+
   /// Of the triangles of a leaf; no bytes if they have none.
   ShapeSpan micromaps(const accel::Accel& accel, NodeRef leaf) const {
     return {micromaps_ + accel.micromaps.places.before(leaf.first_block()), accel.micromaps.places.of(leaf)};
@@ -52,13 +83,17 @@ class Sources {
 
  private:
   std::unordered_map<std::uint32_t, std::uint64_t> first_;
-  std::uint64_t positions_, matrices_, records_, top_records_, micromaps_;
+  std::uint64_t positions_ = 0, matrices_ = 0, records_ = 0, top_records_ = 0, micromaps_ = 0;
+  std::vector<std::uint64_t> first_cluster_, first_number_;  // by mesh and by cluster
+  std::uint64_t bits_ = 0, cluster_records_ = 0, numbers_ = 0;
 };
 
 class Planner {
  public:
   Planner(const accel::Accel& accel, const ShapeMemory& memory, std::uint64_t local = 0)
       : accel_(accel), memory_(memory), sources_(accel, memory), local_(local) {}
+  Planner(const accel::Accel& accel, const ShapeMemory& memory, const accel::TreeClusters& clusters)
+      : accel_(accel), memory_(memory), sources_(accel, memory, clusters) {}
 
   BuilderWork refit(const accel::ChangedParts& parts) {
     std::unordered_map<std::uint32_t, std::size_t> heights;  // by the bits of a mesh's root
@@ -76,6 +111,18 @@ class Planner {
     return std::move(work_);
   }
 
+  BuilderWork update(const accel::ChangedParts& parts, const accel::TreeClusters& clusters,
+                     std::span<const accel::ClusterWork> done) {
+    std::unordered_map<std::uint32_t, std::size_t> heights;
+    for (const accel::ClusterWork& of_mesh : done) {
+      const accel::MeshClusters& mesh = clusters.meshes[of_mesh.mesh];
+      heights[mesh.root.bits()] = update_mesh(mesh, of_mesh);
+    }
+    move_instances(parts, 0);
+    if (parts.top) refit_top(heights);
+    return std::move(work_);
+  }
+
  private:
   ShapeSpan span(NodeRef ref) const { return memory_.strip({kNoInstance, ref}); }
 
@@ -86,19 +133,26 @@ class Planner {
             accel::kPrimitiveMask);
   }
 
+  /// The positions of a primitive, which have moved.
+  void read_positions(std::uint64_t primitive, BuilderTask& task) {
+    task.reads.push_back(sources_.positions(primitive));
+    work_.moved.push_back(task.reads.back());
+  }
+
   /// The stored transforms; a level that has no other work of these instances.
   void move_instances(const accel::ChangedParts& parts, std::size_t level) {
-    for (const std::uint32_t i : parts.instances)
+    for (const std::uint32_t i : parts.instances) {
+      work_.moved.push_back(sources_.matrix(i));
       if (const ShapeSpan record = memory_.transform(i); record.bytes > 0)
         work_.level(level).push_back({{sources_.matrix(i)}, {record}, 0, true});
+    }
   }
 
   /// Returns the level at which the root is written.
   std::size_t refit_mesh(NodeRef ref, std::uint64_t first) {
     BuilderTask task{{span(ref)}, {span(ref)}, 0, false};
     if (!ref.is_inner()) {
-      each_primitive(ref,
-                     [&](std::uint32_t primitive) { task.reads.push_back(sources_.positions(first + primitive)); });
+      each_primitive(ref, [&](std::uint32_t primitive) { read_positions(first + primitive, task); });
       task.boxes = ref.triangles();
       work_.level(0).push_back(std::move(task));
       return 0;
@@ -112,6 +166,73 @@ class Planner {
     task.boxes = node.count;
     work_.level(level).push_back(std::move(task));
     return level;
+  }
+
+  /// Returns the level at which the root is written.
+  std::size_t update_mesh(const accel::MeshClusters& mesh, const accel::ClusterWork& done) {
+    const ShapeSpan bits = sources_.cluster_bits(done.mesh, mesh.clusters.size());
+    work_.moved.push_back(bits);
+    work_.level(0).push_back({{bits}, {}, 0, false});
+    const std::uint64_t first = sources_.first(mesh.root);
+    std::unordered_map<std::uint32_t, std::uint32_t> moved;  // clusters by the bits of their roots
+    std::uint64_t room = 0;                                  // primitives that the task may still take
+    for (std::size_t i = 0; i < done.moved.size(); ++i) {
+      const std::uint32_t number = done.moved[i];
+      const accel::Cluster& cluster = mesh.clusters[number];
+      if (cluster.primitives > room) {
+        work_.level(1).emplace_back();
+        room = std::max<std::uint64_t>(kChunk, cluster.primitives);
+      }
+      room -= cluster.primitives;
+      BuilderTask& task = work_.level(1).back();
+      task.boxes += done.boxes[i];
+      task.writes.push_back(sources_.cluster_records(done.mesh, number, 1));
+      task.reads.push_back(sources_.numbers(done.mesh, number, cluster.primitives));
+      if (done.is_better[i]) task.writes.push_back(task.reads.back());
+      update_cluster(cluster.root, first, task);
+      moved.emplace(cluster.root.bits(), number);
+    }
+    if (moved.empty() || mesh.above.empty()) return 1;
+    if (!done.deals_above) return refit_above(mesh, done.mesh, moved);
+    BuilderTask task{{sources_.cluster_records(done.mesh, 0, mesh.clusters.size())}, {}, done.boxes_above, false};
+    for (const std::uint32_t node : mesh.above) {
+      task.reads.push_back(span(NodeRef::inner(node)));
+      task.writes.push_back(span(NodeRef::inner(node)));
+    }
+    work_.level(2).push_back(std::move(task));
+    return 2;
+  }
+
+  void update_cluster(NodeRef ref, std::uint64_t first, BuilderTask& task) {
+    task.writes.push_back(span(ref));
+    if (!ref.is_inner())
+      return each_primitive(ref, [&](std::uint32_t primitive) { read_positions(first + primitive, task); });
+    task.reads.push_back(span(ref));
+    const accel::Node& node = accel_.nodes[ref.node()];
+    for (int lane = 0; lane < node.count; ++lane) update_cluster(node.child[lane], first, task);
+  }
+
+  /// The nodes above clusters that moved, from these up.
+  std::size_t refit_above(const accel::MeshClusters& mesh, std::size_t number,
+                          const std::unordered_map<std::uint32_t, std::uint32_t>& moved) {
+    std::unordered_map<std::uint32_t, std::uint32_t> numbers;  // of all clusters
+    for (std::uint32_t c = 0; c < mesh.clusters.size(); ++c) numbers.emplace(mesh.clusters[c].root.bits(), c);
+    const auto refit = [&](const auto& self, NodeRef ref) -> std::size_t {  // the level; 0: nothing below has moved
+      if (numbers.contains(ref.bits())) return moved.contains(ref.bits()) ? 1 : 0;
+      const accel::Node& node = accel_.nodes[ref.node()];
+      BuilderTask task{{span(ref)}, {span(ref)}, node.count, false};
+      std::size_t level = 0;
+      for (int lane = 0; lane < node.count; ++lane) {
+        const auto cluster = numbers.find(node.child[lane].bits());
+        task.reads.push_back(cluster == numbers.end() ? span(node.child[lane])
+                                                      : sources_.cluster_records(number, cluster->second, 1));
+        level = std::max(level, self(self, node.child[lane]));
+      }
+      if (level == 0) return 0;
+      work_.level(level + 1).push_back(std::move(task));
+      return level + 1;
+    };
+    return refit(refit, mesh.root);
   }
 
   void refit_top(const std::unordered_map<std::uint32_t, std::size_t>& meshes) {
@@ -252,6 +373,18 @@ BuilderWork refit_work(const accel::Accel& accel, const ShapeMemory& memory, con
 BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
                          std::uint64_t local_primitives) {
   return Planner(accel, memory, local_primitives).rebuild(parts);
+}
+
+BuilderWork cluster_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
+                         const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done) {
+  return Planner(accel, memory, clusters).update(parts, clusters, done);
+}
+
+std::uint64_t cluster_bytes(const accel::TreeClusters& clusters) {
+  std::uint64_t bytes = (clusters.count() + 7) / 8 + clusters.count() * kRecordBytes;
+  for (const accel::MeshClusters& mesh : clusters.meshes)
+    for (const accel::Cluster& cluster : mesh.clusters) bytes += std::uint64_t{cluster.primitives} * kNumberBytes;
+  return bytes;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "accel/builders/clusters.h"
 #include "accel/builders/refit.h"
 #include "accel/structure/accel.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
@@ -18,7 +21,8 @@ struct BuilderTask {
 
 /// Tasks by level: those of one level need all of the levels before it, and nothing of one another.
 struct BuilderWork {
-  std::vector<std::vector<BuilderTask>> levels;
+  std::vector<std::vector<BuilderTask>> levels{};
+  std::vector<ShapeSpan> moved{};  ///< what others have written since the last frame, of all that is read
 
   std::vector<BuilderTask>& level(std::size_t number) {
     if (levels.size() <= number) levels.resize(number + 1);
@@ -43,5 +47,17 @@ BuilderWork refit_work(const accel::Accel& accel, const ShapeMemory& memory, con
 /// is written as a whole.
 BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
                          std::uint64_t local_primitives);
+
+/// An update of clusters that has been done (`done`, accel::update_clusters). A bit a cluster says which have moved. Each
+/// of these reads the list of its primitives' numbers, 4 bytes each, its nodes, for their references, and the positions
+/// of its primitives, and writes its nodes and leaves, a record of 32 bytes with its box and root, and the list if it is
+/// another. A task takes neighbours that moved, up to 64 primitives. Where the clusters of a mesh are dealt out, the
+/// records of all of them and the nodes above are read and these nodes written; otherwise nodes above clusters that
+/// moved read themselves and the records or nodes below, and are written. The top level is refitted.
+BuilderWork cluster_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
+                         const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done);
+
+/// Bytes that the builder keeps of clusters beside the structure: their bits, records and lists.
+std::uint64_t cluster_bytes(const accel::TreeClusters& clusters);
 
 }  // namespace carousel::ringbus::cycle

@@ -63,6 +63,8 @@ inline std::vector<KeyRow> key_rows() {
       {"frames.builder.latency_cycles", kTerrain, {"frames.count=2"}, {"100"}},
       {"frames.builder.requests", kTerrain, {"frames.count=2"}, {"1"}},
       {"frames.builder.local_primitives", kTerrain, {"frames={count: 2, update: rebuild}"}, {"1"}},
+      {"frames.builder.asks", kTerrain, {"frames.count=2"}, {"l2"}},
+      {"frames.cluster_primitives", kTerrain, {"frames={count: 2, update: clusters}"}, {"1"}},
       {"engine.kind", kTerrain},
       {"engine.threads", kNative, {}, {"2"}},
       {"engine.clock_mhz", kTerrain, {}, {"500"}},
