@@ -11,6 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/config/primitive_program.h"
+#include "core/numeric/trigonometry.h"
 #include "core/system/error.h"
 
 namespace carousel::scene {
@@ -19,7 +20,7 @@ namespace {
 
 /// A turn by so many degrees about an axis.
 DMat3 turned(int axis, double degrees) {
-  const double angle = degrees * (std::numbers::pi / 180), c = std::cos(angle), s = std::sin(angle);
+  const auto [s, c] = sin_cos(degrees * (std::numbers::pi / 180));
   const int i = (axis + 1) % 3, j = (axis + 2) % 3;
   DMat3 out(1.0);
   out[i][i] = c, out[j][j] = c;

@@ -10,6 +10,7 @@
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 
+#include "core/numeric/exponential.h"
 #include "modules/pictures/picture_file.h"
 
 namespace carousel::pictures {
@@ -112,12 +113,12 @@ Channels channels_of(const OIIO::ImageSpec& spec) {
 enum class Curve { kSrgb, kLinear, kPower };
 
 float to_linear(float value, Curve curve, float gamma) {
-  if (curve == Curve::kPower) return std::pow(std::max(value, 0.0f), gamma);
+  if (curve == Curve::kPower) return static_cast<float>(pow_precise(double{std::max(value, 0.0f)}, double{gamma}));
   return value;
 }
 
 float to_srgb(float c) {
-  return c <= 0.0031308f ? 12.92f * c : 1.055f * std::pow(c, 1.0f / 2.4f) - 0.055f;  // IEC 61966-2-1
+  return c <= 0.0031308f ? 12.92f * c : 1.055f * pow_float(c, 1.0f / 2.4f) - 0.055f;  // IEC 61966-2-1
 }
 
 bool equal_words(std::string_view one, std::string_view other) {

@@ -18,6 +18,7 @@
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "core/numeric/trigonometry.h"
 #include "modules/scenes/material_map.h"
 #include "modules/scenes/motion.h"
 #include "modules/scenes/source_files.h"
@@ -203,8 +204,6 @@ class SceneReader {
     to.aspect = from.mAspect;
     to.half_width = from.mOrthographicWidth;
     to.znear = from.mClipPlaneNear;
-    // The importers give the whole angle, though the header speaks of half of it.
-    const float half = 0.5f * from.mHorizontalFOV;
     // Assimp 5.2 does not read the angle of a COLLADA file, and takes its default of 45 degrees for radians.
     constexpr float kLost = 0.0138f;
     if (from.mOrthographicWidth == 0 && from.mHorizontalFOV < kLost) {
@@ -213,7 +212,12 @@ class SceneReader {
       to.yfov = 0;
       return to_.cameras.push_back(to);
     }
-    to.yfov = from.mAspect > 0 ? 2 * std::atan(std::tan(half) / from.mAspect) : from.mHorizontalFOV;
+    // The importers give the whole angle, though the header speaks of half of it.
+    constexpr double kTurn = 6.28318530717958647693;
+    const SinCos64 half = sin_cos(0.5 * double{from.mHorizontalFOV});
+    to.yfov = from.mAspect > 0
+                  ? static_cast<float>(2 * kTurn * angle_in_turns(half.sin, half.cos * double{from.mAspect}))
+                  : from.mHorizontalFOV;
     to_.cameras.push_back(to);
   }
 

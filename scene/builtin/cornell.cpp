@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "core/numeric/trigonometry.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/mesh_shapes.h"
 #include "scene/model/camera_pose.h"
@@ -12,7 +13,7 @@ void add_instance(Scene& scene, Mesh mesh, float turn, Vec3 translation) {
   scene.meshes.push_back(std::move(mesh));
   Instance instance;
   instance.mesh = MeshId(static_cast<std::uint32_t>(scene.meshes.size() - 1));
-  const float c = std::cos(turn), s = std::sin(turn);
+  const float c = cos_float(turn), s = sin_float(turn);
   instance.world_from_model = {Mat3(c, 0, -s, 0, 1, 0, s, 0, c), translation};
   scene.instances.push_back(instance);
 }

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/trigonometry.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
@@ -22,7 +23,7 @@ constexpr float kCrownRadius = 1.6f, kCrownHeight = 3.2f;
 float half_width(float height) {
   if (height < 0.12f) return 0.025f;  // the stem
   const float along = (height - 0.12f) / 0.88f;
-  return 0.42f * std::sqrt(along) * (1 - along) * 2.6f * (1 - 0.10f * std::abs(std::sin(22 * along)));
+  return 0.42f * std::sqrt(along) * (1 - along) * 2.6f * (1 - 0.10f * std::abs(sin_float(22 * along)));
 }
 
 /// A serrated leaf, opaque but for a border of half a texel, in which its alpha falls to 0.
@@ -101,8 +102,8 @@ Scene make_foliage(std::int64_t triangles, std::int64_t seed) {
   for (int tree = 0; tree < kTrees; ++tree) {
     const float turn = random.uniform(0, 2 * std::numbers::pi_v<float>), scale = random.uniform(0.8f, 1.2f);
     Affine place;
-    place.linear = Mat3(scale * std::cos(turn), 0, -scale * std::sin(turn), 0, scale, 0, scale * std::sin(turn), 0,
-                        scale * std::cos(turn));
+    place.linear = Mat3(scale * cos_float(turn), 0, -scale * sin_float(turn), 0, scale, 0, scale * sin_float(turn), 0,
+                        scale * cos_float(turn));
     place.translation = {3.4f * static_cast<float>(tree % 3 - 1) + random.uniform(-0.5f, 0.5f), 0,
                          -3.4f * static_cast<float>(tree / 3) + random.uniform(-0.5f, 0.5f)};
     scene.instances.push_back({MeshId(0), place});

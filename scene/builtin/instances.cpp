@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/trigonometry.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
@@ -52,14 +53,14 @@ float scatter(Scene& scene, std::int64_t instances, std::int64_t seed, std::uint
   for (std::int64_t k = 0; k < instances; ++k) {
     const float radius = 0.62f * std::sqrt(static_cast<float>(k) + 0.5f);
     const float angle = std::fmod(static_cast<float>(k) * golden, 2 * std::numbers::pi_v<float>);
-    const float wave = 0.5f + 0.5f * std::cos(9 * radius / std::max(disc, 1.0f));
+    const float wave = 0.5f + 0.5f * cos_float(9 * radius / std::max(disc, 1.0f));
     Instance instance;
     instance.mesh = MeshId(random.below(shapes));
     const Mat3 rotation = random_rotation(random);
     Vec3 scale{random.uniform(0.45f, 1.0f), random.uniform(0.45f, 1.0f), random.uniform(0.45f, 1.0f)};
     if (k % 4 == 3) scale.x = -scale.x;
     instance.world_from_model.linear = rotation * Mat3(scale.x, 0, 0, 0, scale.y, 0, 0, 0, scale.z);
-    instance.world_from_model.translation = {radius * std::cos(angle), 0.75f + 1.6f * wave, radius * std::sin(angle)};
+    instance.world_from_model.translation = {radius * cos_float(angle), 0.75f + 1.6f * wave, radius * sin_float(angle)};
     scene.instances.push_back(instance);
   }
   return disc;

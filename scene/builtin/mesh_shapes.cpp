@@ -9,6 +9,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/trigonometry.h"
+
 namespace carousel::scene {
 
 namespace {
@@ -114,10 +116,10 @@ void add_torus(Mesh& mesh, float major_radius, float minor_radius, int around, i
   const float tau = 2 * std::numbers::pi_v<float>;
   for (int i = 0; i < around; ++i) {
     const float a = tau * static_cast<float>(i) / static_cast<float>(around);
-    const Vec3 out{std::cos(a), 0, std::sin(a)};
+    const Vec3 out{cos_float(a), 0, sin_float(a)};
     for (int j = 0; j < across; ++j) {
       const float b = tau * static_cast<float>(j) / static_cast<float>(across);
-      const Vec3 normal = std::cos(b) * out + Vec3{0, std::sin(b), 0};
+      const Vec3 normal = cos_float(b) * out + Vec3{0, sin_float(b), 0};
       add_vertex(mesh, major_radius * out + minor_radius * normal, normal);
     }
   }
@@ -134,12 +136,12 @@ void add_cone(Mesh& mesh, float radius, float height, int around, MaterialId mat
   const auto first = static_cast<std::uint32_t>(mesh.positions.size());
   const float tau = 2 * std::numbers::pi_v<float>;
   const auto normal_at = [&](float a) {
-    return glm::normalize(Vec3{height * std::cos(a), radius, height * std::sin(a)});
+    return glm::normalize(Vec3{height * cos_float(a), radius, height * sin_float(a)});
   };
   for (int i = 0; i < around; ++i) {
     const float a = tau * static_cast<float>(i) / static_cast<float>(around);
     const float half = tau * (static_cast<float>(i) + 0.5f) / static_cast<float>(around);
-    add_vertex(mesh, {radius * std::cos(a), 0, radius * std::sin(a)}, normal_at(a));
+    add_vertex(mesh, {radius * cos_float(a), 0, radius * sin_float(a)}, normal_at(a));
     add_vertex(mesh, {0, height, 0}, normal_at(half));  // its own apex: one shared normal would point nowhere
   }
   for (int i = 0; i < around; ++i) {

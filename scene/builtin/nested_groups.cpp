@@ -5,6 +5,8 @@
 #include <numbers>
 #include <vector>
 
+#include "core/numeric/exponential.h"
+#include "core/numeric/trigonometry.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/random_rotation.h"
 
@@ -28,9 +30,8 @@ struct Map {
 DVec3 sunflower(std::int64_t k, double spacing) {
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   const double radius = spacing * std::sqrt(double(k) + 0.5), angle = double(k) * golden;
-  // The angle is rounded to float, as everywhere in built-in scenes: any mathematical library gives the same bits.
-  return {radius * double(std::cos(static_cast<float>(std::fmod(angle, 2 * std::numbers::pi)))), 0,
-          radius * double(std::sin(static_cast<float>(std::fmod(angle, 2 * std::numbers::pi))))};
+  return {radius * double(cos_float(static_cast<float>(std::fmod(angle, 2 * std::numbers::pi)))), 0,
+          radius * double(sin_float(static_cast<float>(std::fmod(angle, 2 * std::numbers::pi))))};
 }
 
 class Nested {
@@ -38,7 +39,7 @@ class Nested {
   Nested(Scene& scene, std::int64_t instances, std::int64_t seed, std::int64_t depth, std::uint32_t shapes)
       : scene_(scene), random_(static_cast<std::uint64_t>(seed), 3), instances_(instances), shapes_(shapes) {
     // With as many members at each depth as in the world.
-    const double members = std::pow(double(instances), 1 / double(depth + 1));
+    const double members = pow_precise(double(instances), 1 / double(depth + 1));
     members_ = std::max<std::int64_t>(2, static_cast<std::int64_t>(members + 1e-9));
     for (std::int64_t at = 0; at < depth; ++at) define(at);
   }
@@ -56,7 +57,7 @@ class Nested {
     // Around the others, on a ring.
     for (std::int64_t k = 0; k < single; ++k) {
       const float angle = 2 * std::numbers::pi_v<float> * float(k) / float(single);
-      Map world = random_shape(DVec3(std::cos(angle), 0, std::sin(angle)) * (disc + 1));
+      Map world = random_shape(DVec3(cos_float(angle), 0, sin_float(angle)) * (disc + 1));
       world.translation.y += 0.75;
       scene_.instances.push_back({MeshId(random_.below(shapes_)), world.rounded()});
     }
@@ -80,8 +81,8 @@ class Nested {
   Map random_place(std::int64_t k, double radius, float most_tilt) {
     const float turn = random_.uniform(0, 2 * std::numbers::pi_v<float>), tilt = random_.uniform(-most_tilt, most_tilt);
     const double scale = random_.uniform(0.85f, 1.0f);
-    const DMat3 upright(std::cos(turn), 0, -std::sin(turn), 0, 1, 0, std::sin(turn), 0, std::cos(turn));
-    const DMat3 tilted(1, 0, 0, 0, std::cos(tilt), std::sin(tilt), 0, -std::sin(tilt), std::cos(tilt));
+    const DMat3 upright(cos_float(turn), 0, -sin_float(turn), 0, 1, 0, sin_float(turn), 0, cos_float(turn));
+    const DMat3 tilted(1, 0, 0, 0, cos_float(tilt), sin_float(tilt), 0, -sin_float(tilt), cos_float(tilt));
     const DMat3 scaled(k % 4 == 3 ? -scale : scale, 0, 0, 0, scale, 0, 0, 0, scale);
     return {upright * tilted * scaled, sunflower(k, kSpacing * radius)};
   }

@@ -4,6 +4,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/exponential.h"
+#include "core/numeric/trigonometry.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/builtin/mesh_shapes.h"
@@ -35,14 +37,14 @@ Scene make_sliver(std::int64_t triangles, std::int64_t seed) {
   for (std::int64_t k = 0; k < triangles; ++k) {
     const float y = random.uniform(-0.75f, 1), turn = random.uniform(0, 2 * std::numbers::pi_v<float>);
     const float ring = std::sqrt(std::max(0.0f, 1 - y * y));
-    const Vec3 out{ring * std::cos(turn), y, ring * std::sin(turn)};
+    const Vec3 out{ring * cos_float(turn), y, ring * sin_float(turn)};
     const Vec3 any = std::abs(out.y) < 0.9f ? Vec3{0, 1, 0} : Vec3{1, 0, 0};
     const Vec3 side = glm::normalize(glm::cross(out, any));
     const Vec3 other = glm::cross(out, side);
     const float roll = random.uniform(0, std::numbers::pi_v<float>);
-    const Vec3 across = std::cos(roll) * side + std::sin(roll) * other;
+    const Vec3 across = cos_float(roll) * side + sin_float(roll) * other;
     // Even in the logarithm, so that each power of ten gets its share.
-    const float aspect = kLeastAspect * std::pow(kMostAspect / kLeastAspect, random.uniform());
+    const float aspect = kLeastAspect * pow_float(kMostAspect / kLeastAspect, random.uniform());
     const float inner = random.uniform(0.15f, 0.4f), outer = random.uniform(0.7f, 1.25f);
     const Vec3 half_width = across * (0.5f * (outer - inner) / aspect);
     const auto first = static_cast<std::uint32_t>(burst.positions.size());

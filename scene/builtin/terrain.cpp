@@ -4,6 +4,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
+#include "core/numeric/trigonometry.h"
 #include "scene/builtin/builtin.h"
 #include "scene/builtin/hash_random.h"
 #include "scene/model/camera_pose.h"
@@ -78,7 +79,7 @@ Vec4 color_of(float height, float slope, float grain) {
 float wave(float x, float z, float seconds) {
   if (seconds == 0) return 0;
   const float phase = 0.6f * x + 0.35f * z;
-  return 0.5f * (std::sin(phase - 2 * seconds) - std::sin(phase));
+  return 0.5f * (sin_float(phase - 2 * seconds) - sin_float(phase));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "core/numeric/trigonometry.h"
 #include "core/system/plain_text.h"
 #include "scene/gltf/hierarchy.h"
 #include "scene/gltf/pose/animation.h"
@@ -247,8 +248,8 @@ class NodeReader {
     if (from.type == "directional") to.kind = PunctualLight::Kind::kDirectional;
     if (from.type == "spot") {
       to.kind = PunctualLight::Kind::kSpot;
-      to.inner_cone_cos = static_cast<float>(std::cos(from.spot.innerConeAngle));
-      to.outer_cone_cos = static_cast<float>(std::cos(from.spot.outerConeAngle));
+      to.inner_cone_cos = static_cast<float>(sin_cos(from.spot.innerConeAngle).cos);
+      to.outer_cone_cos = static_cast<float>(sin_cos(from.spot.outerConeAngle).cos);
     }
     scene_.lights.push_back(to);
   }

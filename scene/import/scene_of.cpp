@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/trigonometry.h"
 #include "core/system/error.h"
 #include "core/system/plain_text.h"
 #include "scene/gltf/hierarchy.h"
@@ -233,8 +234,8 @@ class SceneMaker {
       constexpr float kWidest = 1.5707964f;
       const float outer = std::isfinite(from.outer) ? std::clamp(from.outer, 1e-3f, kWidest) : kWidest;
       const float inner = std::isfinite(from.inner) ? std::clamp(from.inner, 0.0f, 0.999f * outer) : 0;
-      to.outer_cone_cos = std::cos(outer);
-      to.inner_cone_cos = std::cos(inner);
+      to.outer_cone_cos = cos_float(outer);
+      to.inner_cone_cos = cos_float(inner);
     }
     scene_.lights.push_back(to);
   }

@@ -10,6 +10,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/trigonometry.h"
 #include "scene/model/camera_pose.h"
 #include "scene/model/floor_plan.h"
 
@@ -92,7 +93,7 @@ Camera fitted_camera(const Scene& scene, float aspect, std::span<const Instance>
   std::array<double, 6> box = extents(scene, shown, outlines, DVec3(0), axes);
   if (!(box[0] >= -box[3])) box.fill(1);  // there is nothing to see
   const DVec3 hi(box[0], box[1], box[2]), lo(-box[3], -box[4], -box[5]), centre = 0.5 * (hi + lo);
-  const double high = std::tan(0.5 * kFieldOfView) / kMargin, wide = high * aspect;
+  const double high = tan_double(0.5 * kFieldOfView) / kMargin, wide = high * aspect;
 
   // A point p is in the frame of a camera at c if right.(p - c) <= wide back.(c - p), and so on for the other edges:
   // each edge is a plane through the camera. The planes that touch the model give the camera's place.

@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "core/numeric/trigonometry.h"
 #include "scene/model/camera_pose.h"
 
 namespace carousel::scene {
@@ -80,8 +81,8 @@ class FloorPlan {
 };
 
 DVec2 direction(int i, int count) {
-  const double angle = (i + 0.5) * 2 * std::numbers::pi / count;
-  return {std::cos(angle), std::sin(angle)};
+  const auto [y, x] = sin_cos((i + 0.5) * 2 * std::numbers::pi / count);
+  return {x, y};
 }
 
 /// The share of sight lines from outside, among those that meet the model, that end at the back of a surface.

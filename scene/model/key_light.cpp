@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "core/numeric/exponential.h"
+
 namespace carousel::scene {
 
 namespace {
@@ -16,7 +18,7 @@ namespace {
 double mean_luminance(const Image& image) {
   constexpr std::size_t kMostTexels = 1 << 18;
   const std::size_t texels = image.rgba.size() / 4, stride = texels / kMostTexels + 1;
-  const auto linear = [](std::uint8_t value) { return std::pow(value / 255.0, 2.2); };  // sRGB, near enough
+  const auto linear = [](std::uint8_t value) { return pow_precise(value / 255.0, 2.2); };  // sRGB, near enough
   double sum = 0;
   std::size_t count = 0;
   for (std::size_t i = 0; i < texels; i += stride, ++count) {

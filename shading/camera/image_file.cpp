@@ -15,6 +15,7 @@
 #include <png.h>
 
 #include "core/module/module.h"
+#include "core/numeric/exponential.h"
 #include "core/system/atomic_file.h"
 #include "core/system/error.h"
 #include "scene/images/picture_module.h"
@@ -49,7 +50,7 @@ class MemoryStream : public Imf::OStream {
 };
 
 std::vector<std::uint8_t> display_pixels(std::span<const float> rgb, float exposure) {
-  const float factor = std::exp2(exposure);
+  const float factor = exp2_float(double{exposure});
   std::vector<std::uint8_t> pixels(rgb.size());
   for (std::size_t i = 0; i < rgb.size(); i += 3) {
     const Vec3 color = tone_curve(factor * Vec3{rgb[i], rgb[i + 1], rgb[i + 2]});

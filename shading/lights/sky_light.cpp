@@ -4,6 +4,7 @@
 #include <cmath>
 #include <span>
 
+#include "core/numeric/trigonometry.h"
 #include "shading/bsdf/lambert.h"
 #include "shading/math/luminance.h"
 #include "shading/math/spherical.h"

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "core/numeric/octahedral.h"
+#include "core/numeric/trigonometry.h"
 #include "scene/model/opacity.h"
-#include "shading/bsdf/lambert.h"
 #include "shading/math/luminance.h"
 #include "shading/surface/texture_lookup.h"
 
@@ -32,8 +32,9 @@ const scene::Mesh& no_vertices() {
 }
 
 Vec2 on_sphere(const TrianglePoint& p) {
-  const Vec3 n(from_octahedral(p.weights[1], p.weights[2]));
-  return {0.5f + std::atan2(n.x, n.z) * (0.5f * kInvPi), std::acos(glm::clamp(n.y, -1.0f, 1.0f)) * kInvPi};
+  const DVec3 n(from_octahedral(p.weights[1], p.weights[2]));
+  return {static_cast<float>(0.5 + angle_in_turns(n.x, n.z)),
+          static_cast<float>(2 * angle_in_turns(std::sqrt(n.x * n.x + n.z * n.z), n.y))};
 }
 
 Vec3 sample(const scene::Scene& scene, const TrianglePoint& p, const scene::TextureUse& use, Encoding encoding) {

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/numeric/trigonometry.h"
 #include "shading/lights/light_set.h"
 #include "shading/lights/sky_facts.h"
 #include "shading/math/sampler.h"
