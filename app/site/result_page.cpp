@@ -48,7 +48,7 @@ std::string run_page_of(const Json& report, const std::filesystem::path& folder)
   return report::html::run_page(report, picture, heat, versus ? &*versus : nullptr);
 }
 
-std::string page_of_file(const report::Document& document, const std::filesystem::path& file) {
+std::string page_of_file(const report::Document& document, const std::filesystem::path& file, bool asks) {
   using report::DocumentKind;
   const Json& json = document.json;
   switch (document.kind) {
@@ -58,7 +58,7 @@ std::string page_of_file(const report::Document& document, const std::filesystem
       if (!json.contains("report")) throw FileError(file.string() + ": the point has no report, since its run failed");
       return run_page_of(json["report"], file.parent_path());
     case DocumentKind::kSweep:
-      return report::html::sweep_page(json, file.has_parent_path() ? file.parent_path().string() : ".");
+      return report::html::sweep_page(json, file.has_parent_path() ? file.parent_path().string() : ".", asks);
     case DocumentKind::kAccuracy:
       return report::html::accuracy_page(json);
     case DocumentKind::kStress:

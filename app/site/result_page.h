@@ -15,7 +15,8 @@ namespace carousel::app {
 std::string run_page_of(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
 
 /// The page of any file that a command wrote. Throws FileError for a point without a report.
-std::string page_of_file(const report::Document& document, const std::filesystem::path& file);
+/// `asks`: the server of the page simulates points.
+std::string page_of_file(const report::Document& document, const std::filesystem::path& file, bool asks = false);
 
 /// The results that commands wrote to a folder, side by side; none if there are none.
 std::vector<std::filesystem::path> results_in(const std::filesystem::path& folder);

@@ -128,7 +128,8 @@ std::string kinds_in(const fs::path& folder) {
 
 }  // namespace
 
-Site::Site(const std::vector<std::string>& roots) : names_(roots), token_(draw_token()) {
+Site::Site(const std::vector<std::string>& roots)
+    : names_(roots), token_(draw_token()), asked_(std::make_unique<AskedPoints>()) {
   for (const std::string& root : roots) {
     std::error_code error;
     const fs::path real = fs::canonical(root, error);
@@ -186,7 +187,7 @@ HttpAnswer Site::file_of(std::size_t root, const fs::path& file) const {
     fs::path json = file;
     json.replace_extension(".json");
     if (!is_inside(root, json) || !fs::is_regular_file(json, error)) return refusal(404, "not found");
-    return page(page_of_file(report::read_document(json), json));
+    return page(page_of_file(report::read_document(json), json, true));
   }
   const char* type = type_of(file);
   if (type == nullptr || !fs::is_regular_file(file, error)) return refusal(404, "not found");
@@ -199,7 +200,7 @@ HttpAnswer Site::folder_page(std::size_t root, const fs::path& folder) const {
   std::vector<fs::path> results = results_in(folder);
   std::erase_if(results, [&](const fs::path& file) { return !is_inside(root, file); });
   if (is_unfinished_sweep(folder) && is_inside(root, folder / "points")) return page(live_sweep_page(folder));
-  if (results.size() == 1) return page(page_of_file(report::read_document(results.front()), results.front()));
+  if (results.size() == 1) return page(page_of_file(report::read_document(results.front()), results.front(), true));
   if (results.empty()) return refusal(404, "not found");
   Html list;
   for (const fs::path& file : results) list += markup("<li><a href=\"{0}.html\">{0}</a></li>\n", file.stem().string());
@@ -208,12 +209,24 @@ HttpAnswer Site::folder_page(std::size_t root, const fs::path& folder) const {
                                     nlohmann::ordered_json::object(), {}));
 }
 
+HttpAnswer Site::ask(std::size_t root, const fs::path& folder, const HttpRequest& request) const {
+  std::error_code ignored;
+  if (!is_inside(root, folder / "sweep.json") || !fs::exists(folder / "sweep.json", ignored) ||
+      !is_inside(root, folder / "points") || !is_inside(root, folder / "asked"))
+    return refusal(404, "not found");
+  if (request.method == "POST") return asked_->start(folder, request.query);
+  const bool named = request.query.size() == 1 && request.query[0].first == "name";
+  return asked_->state(folder, named ? request.query[0].second : "");
+}
+
 HttpAnswer Site::answer(const HttpRequest& request) const {
   if (request.host != fmt::format("127.0.0.1:{}", port_) && request.host != fmt::format("localhost:{}", port_))
     return refusal(421, "this site is at 127.0.0.1 alone");
   std::vector<std::string> names = parts_of_path(request.path);
   if (names.empty() || !same_token(names.front(), token_)) return refusal(404, "not found");
-  if (request.method != "GET" && request.method != "HEAD") return refusal(405, "this site is read and never written");
+  const bool asks = request.path.ends_with("/ask");
+  if (request.method != "GET" && request.method != "HEAD" && !(asks && request.method == "POST"))
+    return refusal(405, "this site is read; only a sweep is asked for a point");
   names.erase(names.begin());
   const bool folder = request.path.ends_with('/');
   if (names.empty()) return folder ? index() : refusal(404, "not found; the address ends with a slash");
@@ -225,6 +238,7 @@ HttpAnswer Site::answer(const HttpRequest& request) const {
   if (root >= roots_.size()) return refusal(404, "not found");
   const std::optional<fs::path> path = inside(root, names);
   if (!path) return refusal(404, "not found");
+  if (asks) return ask(root, path->parent_path(), request);
   return folder ? folder_page(root, *path) : file_of(root, *path);
 }
 

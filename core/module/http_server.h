@@ -3,12 +3,15 @@
 #include <functional>
 #include <stop_token>
 #include <string>
+#include <utility>
+#include <vector>
 
 namespace carousel {
 
 /// A request as it came; the path is decoded and without what follows a question mark.
 struct HttpRequest {
   std::string method, path, host;
+  std::vector<std::pair<std::string, std::string>> query{};  ///< what follows it, decoded
 };
 
 struct HttpAnswer {

@@ -25,7 +25,10 @@ void serve(int port, const std::function<HttpAnswer(const HttpRequest&)>& answer
   server.set_pre_routing_handler([&](const httplib::Request& request, httplib::Response& response) {
     HttpAnswer out;
     try {
-      out = answer({request.method, request.path, request.get_header_value("Host")});
+      out = answer({request.method,
+                    request.path,
+                    request.get_header_value("Host"),
+                    {request.params.begin(), request.params.end()}});
     } catch (const std::exception& error) {
       out = {500, "text/plain; charset=utf-8", std::string(error.what()) + "\n"};
     }

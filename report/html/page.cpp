@@ -50,27 +50,27 @@ Html links_of(const std::vector<Section>& sections) {
 }
 
 /// Charts set style attributes of their own elements, which a hash cannot name.
-std::string policy(std::string_view style, std::string_view script) {
+std::string policy(std::string_view style, std::string_view script, bool asks) {
   return fmt::format(
       "default-src 'none'; script-src {}; style-src-elem {}; style-src-attr 'unsafe-inline'; img-src data:; "
-      "base-uri 'none'; form-action 'none'",
-      script.empty() ? "'none'" : source_of(script), source_of(style));
+      "{}base-uri 'none'; form-action 'none'",
+      script.empty() ? "'none'" : source_of(script), source_of(style), asks ? "connect-src 'self'; " : "");
 }
 
 }  // namespace
 
 std::string page_of(const std::string& title, const std::string& subtitle, const std::vector<Section>& sections,
-                    const Json& facts, const Html& data) {
+                    const Json& facts, const Html& data, bool asks) {
   const std::string_view script = script_bundle();
   const std::string style = "\n" + std::string(style_sheet());
-  static const std::string kPolicy = policy(style, script);
+  static const std::string kPolicies[] = {policy(style, script, false), policy(style, script, true)};
   Html head = markup(
       "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
       "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
       "<meta name=\"color-scheme\" content=\"light dark\">\n<link rel=\"icon\" href=\"data:,\">\n"
       "<title>{}</title>\n",
-      kPolicy, title);
+      kPolicies[asks ? 1 : 0], title);
   Html body = markup(
       "</head>\n<body>\n<a class=\"skip\" href=\"#content\">Skip to the "
       "report</a>\n<header><h1>{}</h1>\n<p>{}</p>\n<nav aria-label=\"Sections\"><ul>\n",

@@ -25,8 +25,8 @@ struct Section {
 /// A whole page in one file: head, style, navigation, sections, data, scripts. `facts` is what the scripts need beside
 /// the tables. `data` holds the script elements of further data, or nothing. The page carries a policy (Content
 /// Security Policy Level 3, W3C) by which a browser runs no script but the program's own, known by its hash, and loads
-/// nothing.
+/// nothing, or where it `asks` only from the server that it came from.
 std::string page_of(const std::string& title, const std::string& subtitle, const std::vector<Section>& sections,
-                    const nlohmann::ordered_json& facts, const Html& data);
+                    const nlohmann::ordered_json& facts, const Html& data, bool asks = false);
 
 }  // namespace carousel::report::html

@@ -8,6 +8,7 @@ import signal
 import socket
 import subprocess
 import tempfile
+import time
 import unittest
 from pathlib import Path
 
@@ -65,7 +66,8 @@ class Serve(unittest.TestCase):
 
     @classmethod
     def files(cls):
-        return sorted((str(p), p.stat().st_mtime_ns) for p in (cls.folder / "out").rglob("*") if p.is_file())
+        return sorted((str(p), p.stat().st_mtime_ns) for p in (cls.folder / "out").rglob("*")
+                      if p.is_file() and cls.folder / "out/sweep/asked" not in p.parents)
 
     def ask(self, path, method="GET", host=None, body=None):
         connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=20)
@@ -126,6 +128,46 @@ class Serve(unittest.TestCase):
             self.assertIn(self.site("0/sweep/sweep.json", method=method, body=b"x")[0].status, (400, 405), method)
         answer, text = self.site("", method="HEAD")
         self.assertEqual((answer.status, text), (200, b""))
+
+    def simulate(self, query, path="0/sweep/ask", **more):
+        return self.site(f"{path}?{query}", method="POST", **more)
+
+    def test_simulates_a_point_between_those_of_a_sweep(self):
+        answer, text = self.simulate("topology.resources=3")
+        self.assertEqual(answer.status, 202, text)
+        name = json.loads(text)["name"]
+        for _ in range(200):
+            state = json.loads(self.site(f"0/sweep/ask?name={name}")[1])
+            if state["state"] != "running":
+                break
+            time.sleep(0.1)
+        self.assertEqual(state["state"], "done", state)
+        carousel(self.folder, "run", "a.yaml", "--set", "topology.resources=3", "--out", "three", "--quiet")
+        report = json.loads((self.folder / "three/report.json").read_text())
+        self.assertEqual(state["results"]["cycles"], report["engine"]["cycles"])
+        self.assertIn(b"What limits it", self.site("0/sweep/" + state["page"])[1])
+        written = {p.name for p in (self.folder / "out/sweep/asked").iterdir()}
+        self.assertEqual(written, {name, name + ".config.json", name + ".log"})
+        # It is not run again.
+        before = (self.folder / "out/sweep/asked" / name / "report.json").stat().st_mtime_ns
+        self.assertEqual(json.loads(self.simulate("topology.resources=3")[1]), {"name": name})
+        self.assertEqual((self.folder / "out/sweep/asked" / name / "report.json").stat().st_mtime_ns, before)
+
+    def test_refuses_other_points(self):
+        for query, message in (("", b"expected a value"), ("topology.resources=5", b"from 2 to 4"),
+                               ("topology.resources=2.5", b"an integer"), ("topology.resources=3;x", b"an integer"),
+                               ("topology.resources=[3]", b"an integer"), ("image.width=8&topology.resources=3", b"no key of"),
+                               ("topology.resources=3&topology.resources=2", b"expected once"),
+                               ("topology.resources=3&out=/tmp/x", b"no key of")):
+            answer, text = self.simulate(query)
+            self.assertEqual(answer.status, 400, query)
+            self.assertIn(message, text, query)
+        for path in ("ask", "0/ask", "0/run%20one/ask", "0/way_out/ask", "0/../ask", "0/live/ask", "9/ask"):
+            self.assertIn(self.simulate("topology.resources=3", path)[0].status, (404, 405), path)
+        for name in ("x", "../../secret", "0" * 32, ""):
+            self.assertEqual(self.site(f"0/sweep/ask?name={name}")[0].status, 404, name)
+        self.assertEqual(self.ask(f"/{'0' * 32}/0/sweep/ask?topology.resources=3", method="POST")[0].status, 404)
+        self.assertEqual(self.simulate("topology.resources=3", host="example.org")[0].status, 421)
 
     def test_no_other_address(self):
         others = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)} - {"127.0.0.1"}

@@ -17,6 +17,7 @@ import {scatter} from './charts/scatter.js';
 import {spans} from './charts/spans.js';
 import {stacked} from './charts/stacked.js';
 import {sweepEffects, sweepPareto, sweepPlot} from './charts/sweep.js';
+import {between} from './between.js';
 import {look} from './look.js';
 import {sweepTable} from './sweep_table.js';
 import {readTable} from './table.js';
@@ -172,6 +173,7 @@ document.documentElement.dataset.charts = '';
 const showTab = tabs();
 themeButton();
 sweepTable(facts);
+between(facts);
 const figures = document.querySelectorAll('figure[data-chart]');
 const seen = new IntersectionObserver((entries) => {
   for (const {isIntersecting, target} of entries) {

@@ -140,7 +140,7 @@ Html failures_of(const Json& sweep) {
 
 }  // namespace
 
-std::string sweep_page(const Json& sweep, const std::string& folder) {
+std::string sweep_page(const Json& sweep, const std::string& folder, bool asks) {
   const Table points = points_table(sweep), effects = effects_table(sweep);
   const auto figure = [](const char* id, const char* kind, const char* tables, const char* title, const char* label) {
     return Figure{.id = id, .kind = kind, .tables = tables, .title = title, .label = label, .height = 420}.html();
@@ -157,11 +157,17 @@ std::string sweep_page(const Json& sweep, const std::string& folder) {
   const Html about = markup(
       "<p>An effect is the difference of a value's mean from the mean of all points, the other keys accounted for. Its "
       "interval (95 %) comes from the part that the additive model leaves unexplained.</p>\n");
+  const Html between = markup(
+      "<p>Between the points of the grid around it a result is taken in proportion, by logarithms where it and the "
+      "key's values allow. {}</p>\n<div id=\"between-points\"></div>\n",
+      asks ? "The button runs the chosen point itself, into the folder asked of the sweep."
+           : "With carousel serve the page also runs the chosen point itself.");
   const bool any = !points.rows.empty() && !list_at(sweep, "results").empty();
   return page_of("Carousel: sweep of " + text_at(sweep, "config"), "carousel sweep",
                  {{"glance", "At a glance", glance_of(sweep)},
                   {"pareto", "Pareto front", any && sweep["results"].size() > 1 ? pareto : Html()},
                   {"plots", "Keys and results", any ? plot : Html()},
+                  {"between", "Between the points", any ? between : Html()},
                   {"effects", "Main effects", effects.rows.empty() ? Html() : about + means + effects.html()},
                   {"points", "Points", points.html()},
                   {"failures", "Failures", failures_of(sweep)}},
@@ -169,9 +175,10 @@ std::string sweep_page(const Json& sweep, const std::string& folder) {
                    {{"folder", folder},
                     {"keys", list_at(sweep, "keys")},
                     {"results", list_at(sweep, "results")},
+                    {"asks", asks},
                     {"greater_is_better", list_at(sweep, "greater_is_better")},
                     {"pareto", sweep.contains("pareto") ? sweep["pareto"]["goals"] : Json::array()}}}},
-                 {});
+                 {}, asks);
 }
 
 }  // namespace carousel::report::html
