@@ -53,7 +53,7 @@ Scene load_file(const SceneConfig& config, const std::filesystem::path& config_d
   Scene scene;
   try {
     scene = is_gltf(file)           ? load_gltf(file, warn, images, pose, executor)
-            : is_gaussian_ply(file) ? load_gaussian_ply(file, warn)
+            : is_gaussian_ply(file) ? load_gaussian_ply(file)
                                     : SceneImporter().load(file, warn, images, pose, executor);
   } catch (const ModuleError& missing) {
     throw ConfigError("scene.file", config.file + " is no glTF file, and " + missing.what());

@@ -5,6 +5,7 @@
 
 #include <glm/matrix.hpp>
 
+#include "core/numeric/exponential.h"
 #include "core/system/error.h"
 #include "scene/builtin/mesh_shapes.h"
 
@@ -20,7 +21,7 @@ float reach_of(const Gaussian& gaussian, const GaussiansConfig& config) {
   if (config.least_alpha <= 0) return config.radius;
   const double times = double{gaussian.opacity} / double{config.least_alpha};
   constexpr double kLeastReach = 1e-3;
-  const double reach = times > 1 ? std::sqrt(2 * std::log(times)) : 0;
+  const double reach = times > 1 ? std::sqrt(2 * log_precise(times)) : 0;
   return std::min(config.radius, static_cast<float>(std::max(reach, kLeastReach)));
 }
 
@@ -39,6 +40,16 @@ bool is_finite(const Gaussian& gaussian) {
       if (!std::isfinite(gaussian.mean[i] + shape[axis][i]) || !std::isfinite(gaussian.mean[i] - shape[axis][i]))
         return false;
   return true;
+}
+
+void leave_out_harmonics(GaussianCloud& cloud, int above) {
+  if (cloud.degree <= above) return;
+  const std::size_t had = higher_harmonics(cloud.degree), has = higher_harmonics(above);
+  for (std::size_t i = 0; i < cloud.shapes.size(); ++i)
+    for (std::size_t k = 0; k < has; ++k) cloud.harmonics[i * has + k] = cloud.harmonics[i * had + k];
+  cloud.harmonics.resize(cloud.shapes.size() * has);
+  cloud.harmonics.shrink_to_fit();
+  cloud.degree = above;
 }
 
 void place_ellipsoids(Scene& scene, MaterialId material) {
@@ -88,6 +99,7 @@ void place_gaussians(Scene& scene, const GaussiansConfig& config, const std::str
   scene.placements.clear();
   scene.nodes.clear();
   scene.gaussians.geometry = config.geometry;
+  if (config.degree) leave_out_harmonics(scene.gaussians, static_cast<int>(*config.degree));
   scene.gaussians.opaque_below = config.opaque_below;
   for (Gaussian& gaussian : scene.gaussians.shapes) {
     gaussian.reach = reach_of(gaussian, config);

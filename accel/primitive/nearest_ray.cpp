@@ -38,10 +38,11 @@ std::uint64_t NearestRay::insert(const Hit& offered) {
   ++counts.offered;
   if (shared_->gaussians == nullptr) return put(offered);
   ++counts.responses;
-  counts.response_bytes += shared_->gaussians->bytes_apart();
   Hit hit;
   if (!shared_->gaussians->respond(record_->ray, tmin_, offered, hit)) return shared_->response_steps;
-  return shared_->response_steps + put(hit);
+  const std::uint32_t terms = shared_->gaussians->color_terms();
+  counts.color_terms += terms;
+  return shared_->response_steps + std::uint64_t{shared_->harmonic_steps} * terms + put(hit);
 }
 
 std::uint64_t NearestRay::put(const Hit& hit) {
@@ -139,7 +140,7 @@ bool NearestRay::blend() {
   if (gaussians == nullptr) return false;
   for (std::uint32_t i = 0; !blended_ && i < count_ && !(transmittance_ < gaussians->opaque_below()); ++i) {
     const float alpha = gaussians->alpha(buffer_[i]);
-    light_ += transmittance_ * alpha * gaussians->color(buffer_[i]);
+    light_ += transmittance_ * alpha * gaussians->color(buffer_[i], record_->ray.direction);
     transmittance_ *= 1 - alpha;
     ++shared_->use.counts.blended;
   }

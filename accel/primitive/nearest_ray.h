@@ -37,8 +37,8 @@ struct NearestShared {
   std::uint32_t nearest = 0, buffered = 0;  ///< of QueryConfig
   QueryConfig::Rounds rounds = QueryConfig::Rounds::kRestart;
   bool leaves_out = false;  ///< a round that begins again leaves out boxes that end before the hits that it has found
-  const GaussianShapes* gaussians = nullptr;  ///< null: hits are those of surfaces
-  std::uint32_t response_steps = 0;           ///< of QueryConfig
+  const GaussianShapes* gaussians = nullptr;             ///< null: hits are those of surfaces
+  std::uint32_t response_steps = 0, harmonic_steps = 0;  ///< of QueryConfig
   NearestUse use{};
   std::uint64_t sent_bytes = 0;  ///< of hits that rays have found, besides each ray's first, since they were last taken
   HitsDigest digest{};           ///< of all hits of completed rays

@@ -110,6 +110,10 @@ class EnergyAccount::Sum {
     }
     parts_.units[UnitKind::kBundle].add(static_cast<double>(of.tests.silhouettes), pj(Cost::kSilhouetteTest));
     parts_.units[UnitKind::kBundle].add_work(static_cast<double>(of.tests.edges), pj(Cost::kEdgeTest));
+    constexpr double kChannels = 3;
+    if (of.color_terms > 0)
+      parts_.units[UnitKind::kHitBuffer].add_work(kChannels * static_cast<double>(of.color_terms),
+                                                  pj(Cost::kProductInstruction));
     divisions(static_cast<double>(of.tests.transforms));
     if (of.tests.programs > 0) instructions(of.tests);
     access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
@@ -232,7 +236,10 @@ ringbus::EnergyEvents energy_events(const report::Report& r) {
     if (of.warps) of.prefetch_votes = resource.units->warps->counts.votes;
   }
   // The report has these of all resources together.
-  if (!out.resources.empty() && r.nearest) out.resources.front().buffer_bytes = r.nearest->counts.moved_bytes();
+  if (!out.resources.empty() && r.nearest) {
+    out.resources.front().buffer_bytes = r.nearest->counts.moved_bytes();
+    out.resources.front().color_terms = r.nearest->counts.color_terms;
+  }
   const ShapeBufferCounts& buffers = r.memory->shape_buffers.counts;
   if (!out.resources.empty()) out.resources.front().shape_reads = buffers.hits + buffers.merged + buffers.misses;
   for (const report::Link& link : *r.links) out.link_bytes.push_back(link.bytes.value_or(0));

@@ -49,7 +49,7 @@ std::uint64_t scene_bytes(const scene::Scene& scene) {
   std::uint64_t bytes =
       scene.instances.size() * sizeof(scene::Instance) + scene.placements.size() * sizeof(scene::GroupPlacement);
   for (const scene::Image& image : scene.images) bytes += image.rgba.size();
-  bytes += scene.gaussians.shapes.size() * sizeof(scene::Gaussian);
+  bytes += scene.gaussians.shapes.size() * sizeof(scene::Gaussian) + scene.gaussians.harmonics.size() * sizeof(Vec3);
   bytes += scene.sky.map.texels.size() * (sizeof(Vec3) + sizeof(std::uint32_t));  // with its SkyLight
   for (const scene::Mesh& mesh : scene.meshes) {
     bytes += mesh.positions.size() * sizeof(Vec3) + mesh.normals.size() * sizeof(Vec3);

@@ -88,6 +88,8 @@ constexpr Row kRows[] = {
     {"rays.query.buffer", kNearest},
     {"rays.query.rounds", kRounds},
     {"rays.query.response_steps", kGaussians},
+    {"rays.query.harmonic_steps", kGaussians},
+    {"rays.query.harmonic_steps", kHarmonics},
     {"rays.hits_per_ray", kQueryAll},
     {"rays.queue", kNative},
     {"rays.queue_depth", kNative},

@@ -18,6 +18,7 @@ struct SceneFacts {
   bool procedural = true;  ///< there are procedural primitives
   bool planes = true;      ///< nodes have cull planes
   bool gaussians = true;   ///< it consists of Gaussians
+  bool harmonics = true;   ///< their colours depend on directions
 };
 
 /// The reason for which the machine cannot feel `key`, a path without list indices: a clause such as "one resource has

@@ -140,6 +140,8 @@ inline constexpr Condition kGaussianCloud{
     [](const C& c, const S&) { return is_generated(c, BuiltinScene::kGaussians); },
     "the scene is not the generated one of Gaussians"};
 inline constexpr Condition kGaussians{[](const C&, const S& s) { return s.gaussians; }, "the scene has no Gaussians"};
+inline constexpr Condition kHarmonics{[](const C&, const S& s) { return s.harmonics; },
+                                      "the Gaussians have harmonics of degree 0 alone"};
 inline constexpr Condition kSurfaces{[](const C&, const S& s) { return !s.gaussians; },
                                      "Gaussians send no rays of their own and have no textures"};
 inline constexpr Condition kInstances{[](const C& c, const S&) { return is_generated(c, BuiltinScene::kInstances); },

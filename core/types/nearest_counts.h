@@ -16,12 +16,12 @@ inline constexpr std::uint64_t kBlendedLightBytes = 16;
 /// The cost of looking for several nearest hits. docs/how-it-works/nearest.md says what each step is.
 struct NearestCounts {
   std::uint64_t rays = 0, hits = 0, offered = 0, inserted = 0, evicted = 0, rounds = 0, strays = 0;
-  std::uint64_t responses = 0, response_bytes = 0, blended = 0;
+  std::uint64_t responses = 0, color_terms = 0, blended = 0;
   std::uint64_t read_bytes = 0, written_bytes = 0;
   std::uint64_t waiting_nodes = 0, waiting_hits = 0, waiting_bytes = 0, waiting_peak_bytes = 0;
 
   /// All bytes that buffers, and what is set aside for them, have cost.
-  std::uint64_t moved_bytes() const { return read_bytes + written_bytes + waiting_bytes + response_bytes; }
+  std::uint64_t moved_bytes() const { return read_bytes + written_bytes + waiting_bytes; }
 
   static constexpr auto counters() {
     using C = NearestCounts;
@@ -35,10 +35,9 @@ struct NearestCounts {
         Counter{"strays", &C::strays, "rays",
                 "rays that met a hit behind the end of its box, whose further rounds leave nothing out"},
         Counter{"responses", &C::responses, "Gaussians", "Gaussians whose greatest response along a ray was computed"},
-        Counter{
-            "response_bytes", &C::response_bytes, "bytes",
-            "bytes of Gaussians that were read for that, where their shapes are triangles; a sphere's are read with "
-            "its instance"},
+        Counter{"color_terms", &C::color_terms, "coefficients",
+                "coefficients of harmonics above degree 0, in three channels, of those that the ray met; a direction "
+                "that is turned counts as three"},
         Counter{"blended", &C::blended, "Gaussians", "those that gave light to a ray, until it was opaque"},
         Counter{"read_bytes", &C::read_bytes, "bytes", "bytes read from the buffers"},
         Counter{"written_bytes", &C::written_bytes, "bytes", "bytes written to the buffers"},

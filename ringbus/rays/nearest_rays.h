@@ -26,7 +26,8 @@ class NearestRays {
                 query.rounds,
                 leaves_out(query, accel),
                 accel.gaussians.get(),
-                static_cast<std::uint32_t>(query.response_steps)},
+                static_cast<std::uint32_t>(query.response_steps),
+                static_cast<std::uint32_t>(query.harmonic_steps)},
         sink_(accel.nearest_hits),
         buffers_(std::size_t{slots} * shared_.buffered),
         found_(query.in_rounds() && !accel.gaussians ? std::size_t{slots} * shared_.nearest : 0) {

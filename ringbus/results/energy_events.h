@@ -21,6 +21,7 @@ struct EnergyEvents {
     std::uint64_t shape_reads = 0;   ///< spans of shape data that were needed
     std::uint64_t stack_bytes = 0;   ///< written to and read from stacks of rays
     std::uint64_t buffer_bytes = 0;  ///< moved at sorted buffers of nearest hits, and set aside and taken back there
+    std::uint64_t color_terms = 0;   ///< of NearestCounts
     std::uint64_t prefetch_votes = 0;
     bool warps = false;  ///< the stacks are registers
   };

@@ -16,7 +16,8 @@ inline SceneFacts scene_facts(const accel::Accel& accel) {
           .any_hit = accel.calls_any_hit(),
           .procedural = accel.procedural_primitives,
           .planes = !accel.planes.empty(),
-          .gaussians = accel.gaussians != nullptr};
+          .gaussians = accel.gaussians != nullptr,
+          .harmonics = accel.gaussians != nullptr && accel.gaussians->degree() > 0};
 }
 
 /// The features of the configured machine with a scene: its report shows only these.

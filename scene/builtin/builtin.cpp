@@ -33,7 +33,8 @@ Scene make_builtin(const SceneConfig& config) {
     case BuiltinScene::kFoliage:
       return make_foliage(triangles(), config.seed);
     case BuiltinScene::kGaussians:
-      return make_gaussians(checked_count(config.gaussians.count, "scene.gaussians.count"), config.seed);
+      return make_gaussians(checked_count(config.gaussians.count, "scene.gaussians.count"), config.seed,
+                            static_cast<int>(config.gaussians.degree.value_or(0)));
   }
   throw ConfigError("scene.builtin", "unknown built-in scene");
 }

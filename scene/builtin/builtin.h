@@ -30,7 +30,7 @@ Scene make_sliver(std::int64_t triangles, std::int64_t seed);
 Scene make_foliage(std::int64_t triangles, std::int64_t seed);
 
 /// A cloud of `count` flat Gaussians on a ball with waves (Scene::gaussians); place_gaussians() gives them shapes.
-Scene make_gaussians(std::int64_t count, std::int64_t seed);
+Scene make_gaussians(std::int64_t count, std::int64_t seed, int degree = 0);
 
 /// The scene `config.builtin` names (which must be set), with its own sky; `config.sky` is not looked at.
 /// Throws ConfigError when a count is outside [1, 2^28].

@@ -88,7 +88,7 @@ Scene import(std::span<const std::byte> bytes, const std::string& file, std::opt
   scene.motion = motion_of(document, accessors);
   if (pose) pose_nodes(document, accessors, budget, *pose, warn, model.model);
   std::vector<NodeMesh> made = read_nodes(document, model.model, accessors, budget, default_material, warn, scene);
-  read_gaussians(document, model.model, accessors, budget, warn, scene);
+  read_gaussians(document, model.model, accessors, budget, scene);
   MeshReader meshes(document, model.model, accessors, budget, default_material, warn);
   DracoReader draco(document, accessors, budget);
   JointTable joints(document, model.model, accessors, budget);

@@ -12,10 +12,12 @@
 #include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
 
+#include "core/numeric/exponential.h"
 #include "core/system/error.h"
 #include "core/system/memory_budget.h"
 #include "core/system/plain_text.h"
@@ -34,6 +36,7 @@ static_assert(std::endian::native == std::endian::little);
 constexpr auto kNames = std::to_array<const char*>({"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0",
                                                     "scale_1", "scale_2", "rot_0", "rot_1", "rot_2", "rot_3"});
 using Row = std::array<float, kNames.size()>;
+constexpr std::string_view kHigher = "f_rest_";  // harmonics above degree 0: all of red, then of green, then of blue
 
 const std::map<std::string, std::size_t>& bytes_of_types() {
   static const std::map<std::string, std::size_t> table{{"char", 1},  {"uchar", 1},   {"int8", 1},   {"uint8", 1},
@@ -55,7 +58,8 @@ std::string beginning(const fs::path& file) {
 struct Layout {
   std::uint64_t count = 0, begin = 0, stride = 0;
   std::array<std::optional<std::uint64_t>, kNames.size()> at;  ///< bytes from the start of a Gaussian's data
-  int higher = 0;                                              ///< properties f_rest_*
+  std::vector<std::optional<std::uint64_t>> higher;            ///< likewise of f_rest_*, by number
+  int degree = 0;                                              ///< of harmonics, by the number of these
 };
 
 class HeaderReader {
@@ -88,6 +92,7 @@ class HeaderReader {
     if (!format) fail("the header names no format; expected binary_little_endian 1.0");
     for (std::size_t i = 0; i < kNames.size(); ++i)
       if (!out_.at[i]) fail(std::string("the header has no property float ") + kNames[i]);
+    read_degree();
     return out_;
   }
 
@@ -109,15 +114,41 @@ class HeaderReader {
   void read_property(const std::string& type, const std::string& name) {
     const auto bytes = bytes_of_types().find(type);
     if (bytes == bytes_of_types().end()) fail_at("expected a property of one number, found type " + shown(type));
-    if (const auto read = std::find(kNames.begin(), kNames.end(), name); read != kNames.end()) {
+    if (std::optional<std::uint64_t>* const at = place_of(name)) {
       if (type != "float" && type != "float32")
         fail_at("expected property float " + name + ", found type " + shown(type));
-      std::optional<std::uint64_t>& at = out_.at[static_cast<std::size_t>(read - kNames.begin())];
-      if (at) fail_at("the property " + name + " is there twice");
-      at = out_.stride;
+      if (*at) fail_at("the property " + name + " is there twice");
+      *at = out_.stride;
     }
-    out_.higher += name.starts_with("f_rest_");
     out_.stride += bytes->second;
+  }
+
+  /// Null if the property is not read.
+  std::optional<std::uint64_t>* place_of(const std::string& name) {
+    if (const auto read = std::find(kNames.begin(), kNames.end(), name); read != kNames.end())
+      return &out_.at[static_cast<std::size_t>(read - kNames.begin())];
+    if (!name.starts_with(kHigher)) return nullptr;
+    const std::string number = name.substr(kHigher.size());
+    constexpr std::size_t kDigits = 2, kMost = 3 * higher_harmonics(kMostHarmonicDegree);
+    if (number.empty() || number.size() > kDigits || number.find_first_not_of("0123456789") != number.npos ||
+        std::stoul(number) >= kMost || (number.size() > 1 && number[0] == '0'))
+      fail_at(fmt::format("expected f_rest_0 to f_rest_{}, found {}", kMost - 1, shown(name)));
+    const std::size_t at = std::stoul(number);
+    if (at >= out_.higher.size()) out_.higher.resize(at + 1);
+    return &out_.higher[at];
+  }
+
+  void read_degree() {
+    for (std::size_t i = 0; i < out_.higher.size(); ++i)
+      if (!out_.higher[i])
+        fail(
+            fmt::format("the header has no property float f_rest_{}, and it has f_rest_{}", i, out_.higher.size() - 1));
+    while (out_.degree < kMostHarmonicDegree && 3 * higher_harmonics(out_.degree) < out_.higher.size()) ++out_.degree;
+    if (3 * higher_harmonics(out_.degree) != out_.higher.size())
+      fail(
+          fmt::format("the header has {} properties f_rest_*; expected 0, 9, 24 or 45, as harmonics of degree 0, 1, 2 "
+                      "or 3 have",
+                      out_.higher.size()));
   }
 
   const fs::path& file_;
@@ -133,8 +164,8 @@ std::optional<std::string> add(const Row& row, GaussianCloud& cloud) {
   Gaussian& out = cloud.shapes.emplace_back();
   out.mean = {row[0], row[1], row[2]};
   out.color = color_of_harmonics({row[3], row[4], row[5]});
-  out.opacity = static_cast<float>(1 / (1 + std::exp(-double{row[6]})));
-  const DVec3 deviations{std::exp(double{row[7]}), std::exp(double{row[8]}), std::exp(double{row[9]})};
+  out.opacity = static_cast<float>(1 / (1 + exp_precise(-double{row[6]})));
+  const DVec3 deviations{exp_precise(double{row[7]}), exp_precise(double{row[8]}), exp_precise(double{row[9]})};
   const double rotation[4] = {row[11], row[12], row[13], row[10]};
   const std::optional<Mat3> spread = spread_of(rotation, deviations);
   if (!spread && row[10] == 0 && row[11] == 0 && row[12] == 0 && row[13] == 0)
@@ -143,6 +174,22 @@ std::optional<std::string> add(const Row& row, GaussianCloud& cloud) {
     return fmt::format("scale_0 to scale_2 are {}, {}, {}; expected logarithms of lengths that single precision holds",
                        row[7], row[8], row[9]);
   out.spread = *spread;
+  return std::nullopt;
+}
+
+/// Likewise the harmonics above degree 0 of one.
+std::optional<std::string> add_harmonics(const Layout& layout, const std::vector<char>& data, GaussianCloud& cloud) {
+  const std::size_t in_channel = higher_harmonics(layout.degree);
+  for (std::size_t k = 0; k < in_channel; ++k) {
+    Vec3& out = cloud.harmonics.emplace_back();
+    for (std::size_t c = 0; c < 3; ++c) {
+      float value;
+      std::memcpy(&value, data.data() + *layout.higher[c * in_channel + k], sizeof(value));
+      if (!std::isfinite(value))
+        return fmt::format("{}{} is {}; expected a finite number", kHigher, c * in_channel + k, value);
+      out[static_cast<int>(c)] = value;
+    }
+  }
   return std::nullopt;
 }
 
@@ -157,7 +204,7 @@ bool is_gaussian_ply(const fs::path& file) {
   return false;
 }
 
-Scene load_gaussian_ply(const fs::path& file, const WarningSink& warn) {
+Scene load_gaussian_ply(const fs::path& file) {
   const auto fail = [&](const std::string& why) { throw SceneError(file.string(), "", why); };
   const std::string head = beginning(file);
   const Layout layout = HeaderReader(file, head).read();
@@ -172,8 +219,9 @@ Scene load_gaussian_ply(const fs::path& file, const WarningSink& warn) {
   Scene scene;
   try {
     MemoryBudget memory(MemoryBudget::of_process());
-    memory.take(layout.count * sizeof(Gaussian));
+    memory.take(layout.count * (sizeof(Gaussian) + layout.higher.size() * sizeof(float)));
     scene.gaussians.shapes.reserve(layout.count);
+    scene.gaussians.harmonics.reserve(layout.count * higher_harmonics(layout.degree));
   } catch (const std::bad_alloc&) {
     fail("not enough memory to load it");
   } catch (const std::length_error& too_much) {
@@ -188,13 +236,11 @@ Scene load_gaussian_ply(const fs::path& file, const WarningSink& warn) {
     for (std::size_t k = 0; k < row.size(); ++k) std::memcpy(&row[k], data.data() + *layout.at[k], sizeof(float));
     if (const std::optional<std::string> wrong = add(row, scene.gaussians))
       fail(fmt::format("Gaussian {}: {}", i, *wrong));
+    if (const std::optional<std::string> wrong = add_harmonics(layout, data, scene.gaussians))
+      fail(fmt::format("Gaussian {}: {}", i, *wrong));
   }
   scene.gaussians.display = true;
-  if (layout.higher > 0 && warn)
-    warn(
-        fmt::format("{}: {} coefficients of harmonics above degree 0 are left out: colours are the same from all "
-                    "directions",
-                    file.string(), layout.higher));
+  scene.gaussians.degree = layout.degree;
   scene.name = plain_text(file.stem().string());
   scene.cameras.push_back(fitted_camera(scene));
   scene.added.camera = true;

@@ -26,7 +26,7 @@ std::optional<Mat3> spread_of(const double (&rotation)[4], const DVec3& deviatio
 
 Vec3 color_of_harmonics(const Vec3& degree_0) {
   constexpr double kValue = 0.2820947917738781;  // of the harmonic: 1 / (2 sqrt(pi))
-  return Vec3(glm::max(DVec3(degree_0) * kValue + 0.5, DVec3(0.0)));
+  return Vec3(DVec3(degree_0) * kValue + 0.5);
 }
 
 }  // namespace carousel::scene

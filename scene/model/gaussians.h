@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -15,14 +16,29 @@ struct Gaussian {
   Vec3 mean{0};
   Mat3 spread{
       1.0f};  ///< rotation times standard deviations, with an inverse; one that a node transforms may be sheared
-  float opacity = 1;  ///< 0 to 1
-  Vec3 color{1};      ///< not negative; from all directions the same
-  float reach = 3;    ///< standard deviations from the mean to its end, set by place_gaussians()
+  float opacity = 1;        ///< 0 to 1
+  Vec3 color{1};            ///< by harmonics of degree 0 alone, without the bound at 0
+  std::uint32_t frame = 0;  ///< its number in GaussianCloud::frames
+  float reach = 3;          ///< standard deviations from the mean to its end, set by place_gaussians()
 };
 
+inline constexpr int kMostHarmonicDegree = 3;
+/// Coefficients of harmonics from degree 1 to `degree`, for each channel.
+constexpr std::size_t higher_harmonics(int degree) {
+  return static_cast<std::size_t>((degree + 1) * (degree + 1) - 1);
+}
+
 /// All Gaussians of a scene, which has no other shapes then.
+///
+/// A Gaussian's colour is its `color` plus the sum of its harmonics above degree 0 in the direction of the ray, and not
+/// negative (KHR_gaussian_splatting, Lighting; with the Condon-Shortley phase, as in Kerbl et al.).
 struct GaussianCloud {
   std::vector<Gaussian> shapes;
+  int degree = 0;               ///< of the harmonics, up to kMostHarmonicDegree
+  std::vector<Vec3> harmonics;  ///< higher_harmonics(degree) for each Gaussian, by degree and order
+  /// From the world to the space in which harmonics are given, but for a scale; 0 is the world itself. None: all are
+  /// given in the world.
+  std::vector<DMat3> frames;
   bool display = false;  ///< colours are sRGB-encoded, and are blended as they are; else they are linear
   // As configured, by place_gaussians():
   GaussiansConfig::Geometry geometry = GaussiansConfig::Geometry::kEllipsoids;
@@ -40,8 +56,7 @@ inline constexpr std::uint32_t kProxyTriangles = 20;
 /// is negative, or none is a normal number of single precision.
 std::optional<Mat3> spread_of(const double (&rotation)[4], const DVec3& deviations);
 
-/// The colour of spherical harmonics of degree 0 (KHR_gaussian_splatting, Lighting): 0.5 more than their value, and not
-/// negative.
+/// Gaussian::color of coefficients of degree 0 (KHR_gaussian_splatting, Lighting): 0.5 more than their value.
 Vec3 color_of_harmonics(const Vec3& degree_0);
 
 }  // namespace carousel::scene

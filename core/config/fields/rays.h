@@ -34,7 +34,7 @@ struct QueryConfig {
   std::int64_t nearest = 0;            ///< 0: the closest alone
   std::optional<std::int64_t> buffer;  ///< absent: as many as `nearest`, and 64 at most
   enum class Rounds { kRestart, kResume } rounds = Rounds::kRestart;
-  std::int64_t response_steps = 8;
+  std::int64_t response_steps = 8, harmonic_steps = 1;
 
   static constexpr std::int64_t kMostBuffered = 64;
 
@@ -81,6 +81,9 @@ void describe(V& v, QueryConfig& c) {
       "response_steps", c.response_steps, IntRange{0, 1024}, "steps",
       "The steps of a testers.hit_buffer unit for the greatest response of a Gaussian along a ray, and for its share "
       "in the ray's light.");
+  v.field("harmonic_steps", c.harmonic_steps, IntRange{0, 64}, "steps",
+          "The steps of such a unit for each coefficient of harmonics above degree 0, in three channels, of the colour "
+          "of a Gaussian that the ray meets. A direction that the Gaussian's node turns takes those of three.");
 }
 
 template <class V>

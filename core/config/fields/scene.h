@@ -102,6 +102,7 @@ struct SceneObject {
 struct GaussiansConfig {
   enum class Geometry { kEllipsoids, kTriangles } geometry = Geometry::kEllipsoids;
   std::int64_t count = 1000;
+  std::optional<std::int64_t> degree;  ///< absent: all that a file has, or 0 in the built-in cloud
   float radius = 3;
   float least_alpha = 0;
   float opaque_below = 0.001f;
@@ -224,6 +225,10 @@ void describe(V& v, GaussiansConfig& c) {
            "The shapes that rays are tested against: an instance of one unit sphere for each Gaussian, or 20 triangles "
            "around it.");
   v.field("count", c.count, IntRange{1, 10'000'000}, "Gaussians", "The number of Gaussians of the built-in cloud.");
+  v.field_or_auto("degree", c.degree, IntRange{0, 3}, "",
+                  "The highest degree of the harmonics that say how a Gaussian's colour depends on the direction from "
+                  "which it is seen. Those of a file above it are left out. auto: all that a file has, and 0 in the "
+                  "built-in cloud.");
   v.field("radius", c.radius, RealRange{0.1, 10}, "standard deviations",
           "A Gaussian ends at this distance from its mean.");
   v.field("least_alpha", c.least_alpha, RealRange{0, 0.5}, "",

@@ -6,7 +6,6 @@
 
 #include "core/config/load/feature_rules.h"
 #include "core/config/load/load.h"
-#include "core/config/machine_conditions.h"
 #include "core/system/error.h"
 
 namespace carousel::config {
@@ -49,7 +48,6 @@ void check_rounds(const Config& c, const RuleBreach& breach) {
   };
   if (c.topology.shape == TopologyShape::kIndependent) {
     no(c.engine.kind == EngineKind::kNative, "engine.kind: cycle, which alone has independent resources with rounds");
-    no(conditions::has_warps(c), "testers.simt.warp: 0, as warps have no rounds yet");
     return;
   }
   no(c.collections.traversal != Traversal::kOrdered || c.bvh.treelets.bytes > 0,
@@ -105,6 +103,18 @@ void require_for_gaussians(const Config& config, const KeyPositions& positions) 
   no(!config.scene.objects.empty(), "scene.objects",
      fmt::format("rays blend these alone, and an object is none; expected no objects, found {}",
                  config.scene.objects.size()));
+  if (config.scene.gaussians.geometry == GaussiansConfig::Geometry::kTriangles) {
+    // A leaf's test reads the records of its Gaussians, which are not beside more than a leaf.
+    const std::string spheres = ", or scene.gaussians.geometry: ellipsoids";
+    no(config.bvh.mixed_triangles > 0, "bvh.mixed_triangles",
+       fmt::format("triangles around them are in leaves; expected 0{}; found {}", spheres, config.bvh.mixed_triangles));
+    no(config.bvh.treelets.bytes > 0, "bvh.treelets.bytes",
+       fmt::format("a treelet of triangles does not bring their records; expected 0{}; found {}", spheres,
+                   config.bvh.treelets.bytes));
+    no(config.collections.key == CollectionKey::kBlock, "collections.key",
+       fmt::format("a block of memory does not bring the records of its triangles; expected node{}; found block",
+                   spheres));
+  }
   no(!config.bvh.file.empty(), "bvh.file", "trees of files are those of other meshes; expected none");
   if (!out.empty()) throw ConfigError(std::move(out));
 }

@@ -37,7 +37,7 @@ struct PacketLoad {
 ///   the entry 4, for policies that read them; per group of rays at another treelet: key 8, depth 1, count 1
 ///   per new ray that looks for a slot: its record 64; with addressed placement its address 2
 ///   with `carry: data` the shapes that are tested (ShapeMemory::shapes()), and below an instance what is stored of its
-///   transform
+///   transform, or the records of Gaussians around which the triangles stand
 /// With other `packets.results`:
 ///   per_shape: no results until the first resource with rays of it has tested a strip of boxes; from then on a packet
 ///   for each shape, with all IDs, a bit a ray, the shape's entry and its part of the data
@@ -66,7 +66,9 @@ class PacketSize {
     const bool test = packet.kind == PacketKind::kTest;
     const bool brings = test && data_ && !treelet;
     const std::uint32_t data = brings ? memory.shapes(packet.key, packet.lanes).bytes : 0;
-    const std::uint32_t transform = brings ? memory.transform(packet.key.instance).bytes : 0;
+    std::uint32_t transform = brings ? memory.transform(packet.key.instance).bytes : 0;
+    if (brings)
+      for (const ShapeSpan& record : memory.gaussians(packet.key, packet.lanes)) transform += record.bytes;
     if (const std::uint32_t parts = this->parts(packet, memory, treelet); parts > 0) {
       load.add(of_shape(n) + (data + parts - 1) / parts + transform, parts, width_);
       load.packets = parts;

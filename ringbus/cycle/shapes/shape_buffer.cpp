@@ -1,6 +1,7 @@
 #include "ringbus/cycle/shapes/shape_buffer.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/system/error.h"
 
@@ -50,15 +51,16 @@ void ShapeBuffer::hand_over(User from, User to) {
   receiver.state = State::kHolds;
   receiver.missing = 0;
   receiver.entries = giver.entries;
+  receiver.spans = giver.spans;
   giver.state = State::kNothing;
 }
 
 /// Gives up all that a user holds.
 void ShapeBuffer::drop(UserState& state, User user) {
-  for (std::uint32_t which = 0; which < 2; ++which) {
+  for (std::uint32_t which = 0; which < state.spans; ++which) {
     const std::uint32_t entry = state.entries[which];
     if (entry == kNone) continue;
-    if (!entries_[entry].here) stop_waiting(entry, 2 * user + which);
+    if (!entries_[entry].here) stop_waiting(entry, wait_of(user, which));
     let_go(entry);
   }
   state.state = State::kNothing;
@@ -99,11 +101,13 @@ void ShapeBuffer::clear_queue(Cycle now) {
 /// Gives `user` the places for all that it needs, if there are enough, and asks for what is not there. A test goes
 /// before the packets of the issue queue, which give up their places for it.
 bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) {
-  std::array<std::uint32_t, 2> found{kNone, kNone};
+  const std::size_t spans = need.size();
+  Entries found;
+  std::fill(found.begin(), found.begin() + spans, kNone);
   std::uint64_t wanted = 0;
   const auto look = [&] {
     wanted = 0;
-    for (std::size_t which = 0; which < 2; ++which) {
+    for (std::size_t which = 0; which < spans; ++which) {
       if (need[which].bytes == 0) continue;
       found[which] = find(need[which]);
       if (found[which] == kNone) wanted += places_to_ask(need[which]);
@@ -115,13 +119,14 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
     if (!test && !room_.empty()) return false;
     const auto room = [&] {
       std::uint64_t own = 0;  // places of shapes that the user itself needs cannot make room
-      for (const std::uint32_t entry : found)
+      for (const std::uint32_t entry : std::span(found).first(spans))
         if (entry != kNone && entries_[entry].here && entries_[entry].holders == 0) own += entries_[entry].places;
       return free_places_ + idle_places_ - own;
     };
     while (room() < wanted) {
-      if (places_to_ask(need[0]) + places_to_ask(need[1]) > places_)
-        throw SimulationError("a strip with its transform is larger than the shape buffer");
+      std::uint64_t all = 0;
+      for (std::size_t which = 0; which < spans; ++which) all += places_to_ask(need[which]);
+      if (all > places_) throw SimulationError("a strip with its records is larger than the shape buffer");
       if (!test || granted_ == 0) return false;
       const User last = queue_[--granted_];
       UserState& state = users_[last];
@@ -135,10 +140,11 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
   state.state = State::kHolds;
   state.missing = 0;
   state.complete_at = now;
-  state.entries = found;
-  for (const std::uint32_t entry : found)
+  state.spans = static_cast<std::uint32_t>(spans);
+  std::copy_n(found.begin(), spans, state.entries.begin());
+  for (const std::uint32_t entry : std::span(found).first(spans))
     if (entry != kNone) hold(entry);
-  for (std::size_t which = 0; which < 2; ++which) {
+  for (std::size_t which = 0; which < spans; ++which) {
     if (need[which].bytes == 0) continue;
     std::uint32_t& entry = state.entries[which];
     count_read(need[which].row, entry == kNone);
@@ -184,13 +190,13 @@ void ShapeBuffer::serve(Cycle now) {
 // ---- fetches
 
 void ShapeBuffer::wait_for(std::uint32_t index, User user, std::size_t which) {
-  const std::uint32_t wait = 2 * user + static_cast<std::uint32_t>(which);
+  const std::uint32_t wait = wait_of(user, which);
   Entry& entry = entries_[index];
-  users_[user].next_wait[which] = kNone;
+  next_wait(wait) = kNone;
   if (entry.first_wait == kNone)
     entry.first_wait = wait;
   else
-    users_[entry.last_wait / 2].next_wait[entry.last_wait % 2] = wait;
+    next_wait(entry.last_wait) = wait;
   entry.last_wait = wait;
   ++users_[user].missing;
 }
@@ -198,10 +204,9 @@ void ShapeBuffer::wait_for(std::uint32_t index, User user, std::size_t which) {
 /// Takes one wait from the middle of an entry's list.
 void ShapeBuffer::stop_waiting(std::uint32_t index, std::uint32_t wait) {
   Entry& entry = entries_[index];
-  const auto next = [&](std::uint32_t of) -> std::uint32_t& { return users_[of / 2].next_wait[of % 2]; };
   std::uint32_t before = kNone;
-  for (std::uint32_t at = entry.first_wait; at != wait; at = next(at)) before = at;
-  (before == kNone ? entry.first_wait : next(before)) = next(wait);
+  for (std::uint32_t at = entry.first_wait; at != wait; at = next_wait(at)) before = at;
+  (before == kNone ? entry.first_wait : next_wait(before)) = next_wait(wait);
   if (entry.last_wait == wait) entry.last_wait = before;
 }
 
@@ -221,14 +226,14 @@ void ShapeBuffer::take_answers(Cycle now) {
       free_places_ += spare;
       room = true;
     }
-    for (std::uint32_t wait = entry.first_wait; wait != kNone; wait = users_[wait / 2].next_wait[wait % 2]) {
-      UserState& state = users_[wait / 2];
+    for (std::uint32_t wait = entry.first_wait; wait != kNone; wait = next_wait(wait)) {
+      UserState& state = users_[user_of(wait)];
       if (--state.missing > 0) continue;
       state.complete_at = now;
       if (state.ahead)
         queue_changed_ = true;
       else
-        ready_.push_back(wait / 2);
+        ready_.push_back(user_of(wait));
     }
     entry.first_wait = entry.last_wait = kNone;
     if (entry.holders > 0) continue;

@@ -105,17 +105,25 @@ class ShapeBuffer {
     std::uint32_t first_wait = kNone, last_wait = kNone;
   };
   enum class State : std::uint8_t { kNothing, kWaits, kHolds };
+  using Entries = std::array<std::uint32_t, ShapeNeed::kMost>;
   struct UserState {
     State state = State::kNothing;
     bool ahead = false;        // in the issue queue
     std::uint8_t missing = 0;  // spans that have not come
     Cycle complete_at = 0;     // the last span came, or all were there
-    std::array<std::uint32_t, 2> entries{kNone, kNone};
-    std::array<std::uint32_t, 2> next_wait{kNone, kNone};  // behind it at the same entry: 2 * user + which of its spans
-    ShapeNeed need;                                        // while it waits for room
-    std::uint64_t others = 0;                              // that get it too; of a packet of the issue queue
+    Entries entries{};         // as many as the need has spans
+    std::uint32_t spans = 0;   // of its need
+    Entries next_wait{};       // behind it at the same entry, by span
+    ShapeNeed need;            // while it waits for room
+    std::uint64_t others = 0;  // that get it too; of a packet of the issue queue
   };
 
+  /// A user's wait for one of its spans, as a number.
+  static std::uint32_t wait_of(User user, std::size_t which) {
+    return static_cast<std::uint32_t>(ShapeNeed::kMost) * user + static_cast<std::uint32_t>(which);
+  }
+  static User user_of(std::uint32_t wait) { return wait / static_cast<std::uint32_t>(ShapeNeed::kMost); }
+  std::uint32_t& next_wait(std::uint32_t wait) { return users_[user_of(wait)].next_wait[wait % ShapeNeed::kMost]; }
   UserState& state_of(User user);
   bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
   std::uint32_t find(const ShapeSpan& span) const;

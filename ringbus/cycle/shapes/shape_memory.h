@@ -1,10 +1,10 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "accel/builders/quantised_boxes.h"
@@ -15,35 +15,22 @@
 #include "accel/transform/instance_data.h"
 #include "core/config/fields/bvh.h"
 #include "core/config/fields/memory.h"
+#include "ringbus/cycle/shapes/gaussian_records.h"
 #include "ringbus/cycle/shapes/leaf_strips.h"
+#include "ringbus/cycle/shapes/shape_span.h"
 
 namespace carousel::ringbus::cycle {
-
-/// A piece of shape data in the simulated memory.
-struct ShapeSpan {
-  std::uint64_t address = 0;
-  std::uint32_t bytes = 0;
-  /// Bytes of the longest strip of its kind, for a strip that ends by its flag (`memory.strip_end: flag`). Until its
-  /// end has been found, this is all that is known of its length. 0: the asker knows the length.
-  std::uint32_t most = 0;
-  std::uint16_t row = accel::StructureDepths::kNoRow;  ///< of a node or leaf
-  friend bool operator==(const ShapeSpan& a, const ShapeSpan& b) {
-    return a.address == b.address && a.bytes == b.bytes;
-  }
-};
-/// The data that a test needs at one time: shapes, and the stored data of their instance's transform. A span without
-/// bytes is not needed.
-using ShapeNeed = std::array<ShapeSpan, 2>;
 
 /// The layout of the acceleration structure in the simulated memory: nodes first, each with its children's cull planes
 /// and the primitives it holds itself behind it, then leaves as they are laid out in the host's, then what is stored of
 /// each instance, from a 64-byte border on, in equal room for all of them: its transform, colour and opacity of its
-/// Gaussian if it stands for one, of groups and their members world boxes and a few numbers besides
-/// (accel/structure/group_placement.h). With `bvh.storage: quantised` nodes have 64 or 80 bytes, or 128 with 12 bits a
-/// plane, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and each primitive of a
-/// leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips, and with `blocks` they are accel::PackedLeaves, from a
-/// 128-byte border on. A leaf has the micromaps of its triangles in it, each behind its triangle, so that whoever reads
-/// the triangle reads them. With `bvh.treelets` nodes and leaves stand where their pieces say (accel::TreePieces).
+/// Gaussian if it stands for one (and behind them GaussianRecords), of groups and their members world boxes and a few
+/// numbers besides (accel/structure/group_placement.h). With `bvh.storage: quantised` nodes have 64 or 80 bytes, or 128
+/// with 12 bits a plane, but for those that keep their boxes as floats (accel/builders/quantised_boxes.h), and each
+/// primitive of a leaf 64; with `bvh.leaves: strips` leaves hold LeafStrips, and with `blocks` they are
+/// accel::PackedLeaves, from a 128-byte border on. A leaf has the micromaps of its triangles in it, each behind its
+/// triangle, so that whoever reads the triangle reads them. With `bvh.treelets` nodes and leaves stand where their
+/// pieces say (accel::TreePieces).
 ///
 /// With `memory.strip_end: flag` (US 9633468: address of the first element, stride, and a flag at the end) a strip ends
 /// behind the last child of a node, unless something stands behind its children's boxes, and behind the last primitive
@@ -65,7 +52,8 @@ class ShapeMemory {
         instance_room_(((accel.promoted_instances > 0 ? promoted_bytes_ : instance_bytes_) +
                         (accel.groups.empty() ? 0 : accel::kMemberBytes + accel::kGroupBytes) + 63) /
                        64 * 64),
-        records_(record_order(accel)) {
+        records_(record_order(accel)),
+        gaussians_(accel, instances_at_ + accel.instances.size() * instance_room_) {
     if (!accel.partition) depths_.emplace(accel);
     if (memory.strip_end == MemoryConfig::StripEnd::kFlag) end_by_flag();
   }
@@ -119,8 +107,7 @@ class ShapeMemory {
 
   /// Bytes of the whole structure, with the gaps that alignment leaves.
   std::uint64_t size_bytes() const {
-    const std::uint64_t apart = accel_.gaussians && look_bytes_ == 0 ? accel_.gaussians->size_bytes() : 0;
-    return instances_at_ + accel_.instances.size() * instance_room_ + apart;
+    return instances_at_ + accel_.instances.size() * instance_room_ + gaussians_.bytes();
   }
 
   /// How many boxes of the node `key` the lanes select; at least one.
@@ -152,6 +139,13 @@ class ShapeMemory {
     if (bytes == 0) return {};
     const std::uint64_t record = records_.empty() ? instance : records_[instance];
     return {instances_at_ + record * instance_room_, bytes};
+  }
+  /// The records of the Gaussians around which the triangles of a leaf stand.
+  std::span<const ShapeSpan> gaussians(accel::NodeKey key) const { return gaussians_.of(key.ref); }
+  /// Those of the triangles that `lanes` selects, as for shapes().
+  std::span<const ShapeSpan> gaussians(accel::NodeKey key, std::uint32_t lanes) const {
+    if (std::popcount(lanes) != 1 || accel_.packed) return gaussians(key);
+    return gaussians_.of(key.ref, static_cast<std::uint32_t>(std::countr_zero(lanes)));
   }
 
  private:
@@ -277,6 +271,7 @@ class ShapeMemory {
   std::uint32_t most_node_ = 0, most_leaf_ = 0;   // bytes of the longest strip that ends by its flag; 0: none does
   std::optional<accel::StructureDepths> depths_;  // of a structure that is here as a whole
   std::vector<std::uint32_t> records_;            // by instance: the place of its record; empty: its number
+  GaussianRecords gaussians_;
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -23,7 +23,9 @@ std::int64_t least_shape_buffer_kib(const accel::Accel& accel, const AccuracyCon
     const ShapeSpan span = blocks                  ? blocks->span(ref)
                            : memory.has_treelets() ? memory.treelet(ref)
                                                    : memory.strip({kNoInstance, ref});
-    strip = std::max(strip, ShapeBuffer::places_to_ask(span));
+    std::uint64_t places = ShapeBuffer::places_to_ask(span);
+    for (const ShapeSpan& record : memory.gaussians({kNoInstance, ref})) places += ShapeBuffer::places(record);
+    strip = std::max(strip, places);
   };
   for (std::uint32_t i = 0; i < accel.nodes.size(); ++i) {
     consider(accel::NodeRef::inner(i));

@@ -116,8 +116,9 @@ void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
   thread.strip = *next;
   if (follows(slot)) [[unlikely]]
     waits_since_ = now;
-  ShapeNeed need{memory_.strip(*next), {}};
-  if (thread.walk.enters(next->instance)) need[1] = memory_.transform(next->instance);
+  const bool enters = thread.walk.enters(next->instance);
+  const ShapeNeed need(memory_.strip(*next), enters ? memory_.transform(next->instance) : ShapeSpan{},
+                       memory_.gaussians(*next));
   if (shapes_.take(slot, need, now)) test(slot, now);
 }
 

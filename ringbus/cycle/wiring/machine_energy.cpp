@@ -46,8 +46,10 @@ void read_energy(const SimulatedMachine& machine, EnergyEvents& events) {
   std::optional<DistributorCounts> distributor;
   for (const auto& resource : machine.resources()) {
     ResourceAgent::Work work = resource->work();
-    if (const NearestRays* const nearest = machine.shared().stores[events.resources.size()]->nearest())
+    if (const NearestRays* const nearest = machine.shared().stores[events.resources.size()]->nearest()) {
       work.energy.buffer_bytes = nearest->use().counts.moved_bytes();
+      work.energy.color_terms = nearest->use().counts.color_terms;
+    }
     events.resources.push_back(work.energy);
     if (!distributor && work.distributor != nullptr) distributor = *work.distributor;
   }

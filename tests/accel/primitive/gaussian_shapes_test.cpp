@@ -1,6 +1,7 @@
 // Where the response of a Gaussian is greatest along a ray, in closed form and by search.
 #include "accel/structure/gaussian_shapes.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -55,6 +56,28 @@ TEST(GaussianShapes, IsMetWithinTheRayAndBehindTheFrontOfItsShapeAlone) {
 TEST(GaussianShapes, OpaqueOnesLeaveAHundredthOfTheLight) {
   const GaussianShapes shapes(cloud_of({}));
   EXPECT_EQ(shapes.alpha(shape_at(0)), 0.99f);
+}
+
+// A node's turn of its harmonics is the way back of the direction; neither length matters.
+TEST(GaussianShapes, ColourTurnsWithItsFrame) {
+  scene::Scene scene = scene::make_gaussians(30, 5, 3);
+  const GaussianShapes still(scene.gaussians);
+  EXPECT_EQ(still.color_terms(), 15u);
+  const DMat3 turn(DVec3(0, 2, 0), DVec3(0, 0, 2), DVec3(2, 0, 0));  // x to y to z, twice as large
+  scene.gaussians.frames = {DMat3(1.0), glm::inverse(turn)};
+  for (scene::Gaussian& one : scene.gaussians.shapes) one.frame = 1;
+  const GaussianShapes turned(scene.gaussians);
+  EXPECT_EQ(turned.color_terms(), 18u);
+  EXPECT_EQ(turned.bytes_in_instance(), still.bytes_in_instance() + 36);
+  bool differs = false;
+  for (std::uint32_t i = 0; i < 30; ++i) {
+    const Hit hit{1, 0, 0, i, 0};
+    const Vec3 a = still.color(hit, {0.3f, -0.5f, 0.8f}), b = turned.color(hit, {0.8f * 3, 0.3f * 3, -0.5f * 3});
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(a[c], b[c], 1e-6f);
+    differs |= a != still.color(hit, {0.8f, 0.3f, -0.5f});
+    EXPECT_GE(std::min({a.x, a.y, a.z}), 0.0f);
+  }
+  EXPECT_TRUE(differs);
 }
 
 // The response at the hit is the greatest of many along the ray, computed with the inverse of the covariance.

@@ -80,7 +80,7 @@ inline std::string text(BaseMachine machine) {
              "    parameters: {r: 0.5}\n    program:\n" +
              ball_program() + slots + cycle;
     case BaseMachine::kGaussians:
-      return "scene: {builtin: gaussians, gaussians: {count: 150}}\n"
+      return "scene: {builtin: gaussians, gaussians: {count: 150, degree: 1}}\n"
              "rays: {slots_per_resource: 32, query: {nearest: 200, buffer: 8}}\n"
              "engine: {kind: cycle, threads: 1, what_if: false}\n"
              "image: {width: 12, height: 8, samples: 1, max_depth: 3}\n"

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numbers>
 #include <random>
 #include <sstream>
 #include <string>
@@ -45,7 +46,27 @@ std::vector<PlyGaussian> cloud(int count) {
     for (float& scale : one.scale) scale = within(-4, -1);
     for (float& part : one.rotation) part = within(-1, 1);
   }
+  for (PlyGaussian& one : out)
+    for (float& coefficient : one.higher) coefficient = within(-0.5f, 0.5f);
   return out;
+}
+
+/// The real spherical harmonic in a direction of length 1 by its definition: of polar angles and associated Legendre
+/// functions with the Condon-Shortley phase.
+double harmonic(int degree, int order, const DVec3& d) {
+  const int m = std::abs(order);
+  const double around = std::atan2(d.y, d.x), across = std::sqrt(std::max(0.0, 1 - d.z * d.z));
+  double same = 1;  // of order m and degree m, then by recurrence of the degree wanted
+  for (int k = 1; k <= m; ++k) same *= -(2 * k - 1) * across;
+  double below = 0, at = same, factorials = 1;
+  for (int l = m + 1; l <= degree; ++l) {
+    const double next = ((2 * l - 1) * d.z * at - (l + m - 1) * below) / (l - m);
+    below = at, at = next;
+  }
+  for (int k = degree - m + 1; k <= degree + m; ++k) factorials *= k;
+  const double scale = std::sqrt((2 * degree + 1) / (4 * std::numbers::pi) / factorials);
+  if (order == 0) return scale * at;
+  return std::sqrt(2.0) * scale * at * (order > 0 ? std::cos(m * around) : std::sin(m * around));
 }
 
 double linear(double c) {
@@ -54,15 +75,22 @@ double linear(double c) {
 
 /// What a file says of a Gaussian, in double.
 struct Reference {
-  DVec3 mean, color;
-  DMat3 precision;  ///< inverse of the covariance
+  DVec3 mean;
+  std::vector<DVec3> harmonics;  ///< by degree and order
+  DMat3 precision;               ///< inverse of the covariance
   double opacity;
 };
 
-Reference reference_of(const PlyGaussian& one) {
+Reference reference_of(const PlyGaussian& one, int degree) {
   Reference out;
   out.mean = {one.x, one.y, one.z};
-  for (int c = 0; c < 3; ++c) out.color[c] = std::max(0.0, 0.5 + 0.28209479177387814 * double{one.color[c]});
+  out.harmonics.resize(static_cast<std::size_t>((degree + 1) * (degree + 1)));
+  const std::size_t in_channel = out.harmonics.size() - 1;
+  for (std::size_t c = 0; c < 3; ++c) {
+    out.harmonics[0][static_cast<int>(c)] = double{one.color[c]};
+    for (std::size_t k = 0; k < in_channel; ++k)
+      out.harmonics[k + 1][static_cast<int>(c)] = double{one.higher[c * in_channel + k]};
+  }
   out.opacity = 1 / (1 + std::exp(-double{one.opacity}));
   double w = one.rotation[0], x = one.rotation[1], y = one.rotation[2], z = one.rotation[3];
   const double length = std::sqrt(w * w + x * x + y * y + z * z);
@@ -74,6 +102,14 @@ Reference reference_of(const PlyGaussian& one) {
   for (int axis = 0; axis < 3; ++axis) scaled[axis][axis] = std::exp(-2 * double{one.scale[axis]});
   out.precision = glm::transpose(rows) * scaled * rows;
   return out;
+}
+
+DVec3 color_of(const Reference& one, const DVec3& direction) {
+  DVec3 sum(0.5);
+  std::size_t at = 0;
+  for (int degree = 0; at < one.harmonics.size(); ++degree)
+    for (int order = -degree; order <= degree; ++order) sum += harmonic(degree, order, direction) * one.harmonics[at++];
+  return glm::max(sum, DVec3(0.0));
 }
 
 /// The light of a ray: all Gaussians that it passes within three standard deviations, sorted by where they respond
@@ -97,16 +133,16 @@ DVec3 light_of(const std::vector<Reference>& all, const Ray& ray) {
   double passing = 1;
   for (const Met& one : met) {
     if (passing < 0.001) break;
-    light += passing * one.alpha * one.gaussian->color;
+    light += passing * one.alpha * color_of(*one.gaussian, glm::normalize(direction));
     passing *= 1 - one.alpha;
   }
   for (int c = 0; c < 3; ++c) light[c] = linear(light[c]);  // the sky is black
   return light;
 }
 
-std::vector<double> reference_picture(const std::vector<PlyGaussian>& gaussians) {
+std::vector<double> reference_picture(const std::vector<PlyGaussian>& gaussians, int degree) {
   std::vector<Reference> all;
-  for (const PlyGaussian& one : gaussians) all.push_back(reference_of(one));
+  for (const PlyGaussian& one : gaussians) all.push_back(reference_of(one, degree));
   const shading::CameraRays camera(scene::look_at(kEye, Vec3(0), 0.8f), {}, kWidth, kHeight);
   const shading::Sampler sampler(kSeed, 1);
   std::vector<double> out;
@@ -121,7 +157,7 @@ std::vector<double> reference_picture(const std::vector<PlyGaussian>& gaussians)
 class Gaussians : public testing::Test {
  protected:
   Gaussians() {
-    program_.write("cloud.ply", scene::gaussian_ply(cloud(kCount)));
+    write_cloud(0);
     program_.write("run.yaml",
                    fmt::format("scene: {{file: cloud.ply, sky: {{strength: 0}}}}\n"
                                "camera: {{eye: [{}, {}, {}], target: [0, 0, 0], field_of_view: 45.8366236}}\n"
@@ -131,6 +167,7 @@ class Gaussians : public testing::Test {
                                kEye.x, kEye.y, kEye.z, kWidth, kHeight, kSeed));
   }
 
+  void write_cloud(int degree) { program_.write("cloud.ply", scene::gaussian_ply(cloud(kCount), degree)); }
   Outcome run(const std::string& sets) {
     std::vector<std::string> words{"run", "run.yaml", "--out", "out", "--force", "--quiet", "--no-html"};
     std::istringstream in(sets);
@@ -162,7 +199,7 @@ const std::vector<std::string>& machines() {
 }
 
 TEST_F(Gaussians, PictureIsThatOfAllHitsSortedOnEveryMachine) {
-  const std::vector<double> wanted = reference_picture(cloud(kCount));
+  const std::vector<double> wanted = reference_picture(cloud(kCount), 0);
   ASSERT_GT(*std::max_element(wanted.begin(), wanted.end()), 0.3);
   std::string digest;
   std::uint64_t blended = 0;
@@ -189,6 +226,82 @@ TEST_F(Gaussians, PictureIsThatOfAllHitsSortedOnEveryMachine) {
     }
 }
 
+TEST_F(Gaussians, HaveTheColoursOfHarmonicsOfDegree0To3) {
+  std::size_t turn = run_seed();
+  for (int degree = 0; degree <= 3; ++degree) {
+    write_cloud(degree);
+    const std::vector<double> wanted = reference_picture(cloud(kCount), degree);
+    std::string digest;
+    for (const std::string geometry : {"ellipsoids", "triangles"}) {
+      const Json result = report(machines()[++turn % machines().size()] + " scene.gaussians.geometry=" + geometry);
+      ASSERT_TRUE(result.is_object());
+      const ExrPicture picture = read_exr(program_.folder() / "out/image.exr");
+      ASSERT_EQ(picture.rgb.size(), wanted.size());
+      for (std::size_t i = 0; i < wanted.size(); ++i)
+        ASSERT_NEAR(picture.rgb[i], wanted[i], 4e-5) << degree << ": " << i / 3 % kWidth << ", " << i / 3 / kWidth;
+      if (digest.empty()) digest = result["digest"]["image"].get<std::string>();
+      EXPECT_EQ(result["digest"]["image"], digest) << geometry << degree;
+    }
+    // Those of a file above a degree are left out.
+    if (degree < 3) continue;
+    const std::vector<double> first = reference_picture(cloud(kCount), 0);
+    ASSERT_TRUE(report("scene.gaussians.degree=0").is_object());
+    const ExrPicture picture = read_exr(program_.folder() / "out/image.exr");
+    for (std::size_t i = 0; i < first.size(); ++i) ASSERT_NEAR(picture.rgb[i], first[i], 2e-5);
+  }
+}
+
+// Each Gaussian that a ray meets costs the steps of its coefficients. Its record grows by their bytes, which are read
+// with it: from memory, and from packets that bring what is tested.
+TEST_F(Gaussians, PayForHarmonics) {
+  const std::string machine =
+      "energy.profile=n45 rays.query.rounds=resume topology.resources=1 memory.shape_buffer_kib=4096";
+  const auto steps = [](const Json& r) { return r["tests"]["buffer_steps"]["count"].get<std::uint64_t>(); };
+  const auto terms = [](const Json& r) { return r["nearest"]["color_terms"].get<std::uint64_t>(); };
+  const auto joules = [](const Json& r) { return r["energy"]["parts"]["hit_buffer_steps"]["joules"].get<double>(); };
+  const auto lines = [](const Json& r) { return r["memory"]["caches"][0]["lines"].get<std::uint64_t>(); };
+  constexpr std::uint64_t kCoefficients[4] = {0, 3, 8, 15}, kLines[4] = {1, 2, 3, 4};
+  for (const std::string geometry : {"ellipsoids", "triangles"}) {
+    const bool triangles = geometry == "triangles";
+    const std::string with = machine + " scene.gaussians.geometry=" + geometry;
+    write_cloud(0);
+    const Json plain = report(with),
+               packets = report(with + " topology.resources=3 packets.carry=data memory.fetch=packet");
+    EXPECT_EQ(terms(plain), 0u);
+    std::uint64_t met = 0;
+    for (int degree = 1; degree <= 3; ++degree) {
+      write_cloud(degree);
+      const Json result = report(with), free = report(with + " rays.query.harmonic_steps=0"),
+                 slow = report(with + " rays.query.harmonic_steps=64");
+      EXPECT_EQ(terms(result) % kCoefficients[degree], 0u);
+      if (degree == 1) met = terms(result) / 3;
+      EXPECT_EQ(terms(result) / kCoefficients[degree], met);
+      EXPECT_EQ(steps(free), steps(plain));
+      EXPECT_EQ(steps(result), steps(free) + terms(result));
+      EXPECT_GT(slow["engine"]["cycles"], free["engine"]["cycles"]);
+      // A step is 1.8 pJ, and a coefficient three products of 9.6 pJ besides.
+      EXPECT_NEAR(joules(result) - joules(free), 1.8e-12 * static_cast<double>(terms(result)), 1e-4 * joules(result));
+      EXPECT_NEAR(joules(result) - joules(plain), (1.8e-12 + 3 * 9.6e-12) * static_cast<double>(terms(result)),
+                  1e-4 * joules(result));
+      // The buffer holds all, so each record is read once: 64 bytes beside triangles and another coefficient's 12.
+      const std::uint64_t more = lines(result) - lines(plain);
+      if (triangles) {
+        EXPECT_EQ(more % (kLines[degree] - kLines[0]), 0u);
+        EXPECT_LE(more / (kLines[degree] - kLines[0]), kCount);
+        EXPECT_GT(more / (kLines[degree] - kLines[0]), kCount / 2);
+      } else {
+        EXPECT_GT(more, kCount / 2);
+      }
+      EXPECT_GE(result["structure"]["bytes"].get<std::uint64_t>(),
+                plain["structure"]["bytes"].get<std::uint64_t>() + 12 * kCoefficients[degree] * kCount);
+      const Json bring = report(with + " topology.resources=3 packets.carry=data memory.fetch=packet");
+      EXPECT_GT(
+          bring["links"][0]["bytes"].get<std::uint64_t>(),
+          packets["links"][0]["bytes"].get<std::uint64_t>() + packets["links"][0]["bytes"].get<std::uint64_t>() / 10);
+    }
+  }
+}
+
 // Bytes beside the records, steps, joules and area; opaque rays end early, and resumed rounds visit less.
 TEST_F(Gaussians, CostWhatTheyTake) {
   const std::string machine = "energy.profile=n45 rays.query.rounds=resume";
@@ -205,8 +318,6 @@ TEST_F(Gaussians, CostWhatTheyTake) {
   EXPECT_GT(count(all, "blended"), count(resume, "blended"));
   EXPECT_GT(count(all, "rounds"), count(resume, "rounds"));
   EXPECT_GT(count(restart, "visits"), count(resume, "visits"));
-  EXPECT_EQ(count(resume, "response_bytes"), 0u);  // read with the instance
-  EXPECT_EQ(count(triangles, "response_bytes"), 64 * count(triangles, "responses"));
   EXPECT_GT(triangles["structure"]["bytes"], resume["structure"]["bytes"]);
   EXPECT_EQ(resume["structure"]["primitives"], 1);  // they share a sphere
   EXPECT_EQ(triangles["structure"]["primitives"], 20 * kCount);
@@ -230,6 +341,13 @@ TEST_F(Gaussians, RefuseWhatIsNotBuilt) {
       {"verify=reference", "verify: the scene consists of Gaussians; the reference knows surfaces alone"},
       {"scene.gaussians.geometry=ellipsoid", "did you mean 'ellipsoids'?"},
       {"scene.gaussians.radius=0", "scene.gaussians.radius: expected"},
+      {"scene.gaussians.degree=4", "scene.gaussians.degree: expected"},
+      {"scene.gaussians.geometry=triangles bvh.mixed_triangles=4",
+       "bvh.mixed_triangles: the scene consists of Gaussians"},
+      {"scene.gaussians.geometry=triangles collections.key=block",
+       "a block of memory does not bring the records of its triangles; expected node, or scene.gaussians.geometry"},
+      {"scene.gaussians.geometry=triangles rays.query.nearest=8 rays.query.buffer=auto bvh.treelets.bytes=1024",
+       "bvh.treelets.bytes: the scene consists of Gaussians"},
       {R"(scene.objects=[{"primitive":"cube"}])",
        "scene.objects: the scene consists of Gaussians; rays blend these alone"},
       {"collections.traversal=spread", "expected at most 64 with rays.query.buffer: auto, or collections.traversal"},

@@ -1,6 +1,8 @@
 // KHR_gaussian_splatting: points that are Gaussians.
+#include <cmath>
 #include <string>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include "tests/scene/gltf/gltf_builder.h"
@@ -55,7 +57,7 @@ TEST(GltfGaussians, AreReadWithTheirUnitsAndMovedByTheirNode) {
   EXPECT_NEAR(shapes[1].opacity, 0.2f, 1e-6f);
   EXPECT_NEAR(shapes[1].color.x, 0.78209479f, 1e-6f);
   EXPECT_NEAR(shapes[1].color.y, 0.21790521f, 1e-6f);
-  EXPECT_EQ(shapes[1].color.z, 0.0f);
+  EXPECT_NEAR(shapes[1].color.z, 0.5f - 9 * 0.28209479f, 1e-6f);
   const Mat3 expected(0, 1, 0, -0.5f, 0, 0, 0, 0, 4);
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) EXPECT_NEAR(shapes[1].spread[c][r], expected[c][r], 1e-6f) << c << r;
@@ -71,14 +73,38 @@ TEST(GltfGaussians, OfSeveralNodesAreThereSeveralTimes) {
   EXPECT_EQ(scene.gaussians.shapes[2].mean, Vec3(6, 0, 0));
 }
 
-TEST(GltfGaussians, LeaveHigherHarmonicsOutWithAWarning) {
-  GltfBuilder b = two();
-  for (int i = 0; i < 3; ++i)
-    attribute(b, "SH_DEGREE_1_COEF_" + std::to_string(i)) = b.floats({1, 1, 1, 1, 1, 1}, "VEC3", 3);
-  std::vector<std::string> warnings;
-  EXPECT_EQ(b.load([&](const std::string& w) { warnings.push_back(w); }).gaussians.shapes.size(), 2u);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], testing::HasSubstr("harmonics above degree 0 are left out"));
+/// Adds harmonics of a degree; coefficient k of Gaussian i is 10 * degree + k, plus 100 * i.
+void add_degree(GltfBuilder& b, int degree) {
+  for (int k = 0; k <= 2 * degree; ++k) {
+    const float of = static_cast<float>(10 * degree + k);
+    attribute(b, fmt::format("SH_DEGREE_{}_COEF_{}", degree, k)) =
+        b.floats({of, of, of, of + 100, of + 100, of + 100}, "VEC3", 3);
+  }
+}
+
+// A turned node turns the space of the harmonics, a larger one does not.
+TEST(GltfGaussians, HaveHarmonicsOfDegree0To3InTheSpaceOfTheirNode) {
+  for (int degree = 0; degree <= 3; ++degree) {
+    GltfBuilder b = two();
+    for (int of = 1; of <= degree; ++of) add_degree(b, of);
+    b.json["nodes"][0]["scale"] = {2, 2, 2};
+    b.node({{"mesh", 0}, {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}});  // x goes to y
+    const GaussianCloud cloud = b.load().gaussians;
+    EXPECT_EQ(cloud.degree, degree);
+    const std::size_t each = higher_harmonics(degree);
+    ASSERT_EQ(cloud.harmonics.size(), 4 * each);
+    std::size_t at = each;
+    for (int of = 1; of <= degree; ++of)
+      for (int k = 0; k <= 2 * of; ++k) EXPECT_EQ(cloud.harmonics[at++], Vec3(static_cast<float>(100 + 10 * of + k)));
+    if (degree == 0) continue;
+    ASSERT_EQ(cloud.frames.size(), 2u);
+    EXPECT_EQ(cloud.shapes[0].frame, 0u);
+    EXPECT_EQ(cloud.shapes[3].frame, 1u);
+    EXPECT_EQ(cloud.frames[0], DMat3(1.0));
+    const DVec3 back = cloud.frames[1] * DVec3(0, 1, 0);
+    EXPECT_NEAR(back.x, 1, 1e-6);
+    EXPECT_NEAR(back.y, 0, 1e-6);
+  }
 }
 
 TEST(GltfGaussians, FaultsAreNamed) {
@@ -114,6 +140,22 @@ TEST(GltfGaussians, FaultsAreNamed) {
         attribute(b, "ROTATION") = b.floats({0, 0, 0, 1, 0, 0, 0, 0}, "VEC4", 4);
       },
       attributes, "Gaussian 1 has no shape");
+  refused(
+      [](GltfBuilder& b) {
+        add_degree(b, 1);
+        primitive(b)["attributes"].erase(std::string(kName) + ":SH_DEGREE_1_COEF_2");
+      },
+      attributes,
+      "expected the attribute KHR_gaussian_splatting:SH_DEGREE_1_COEF_2, as there are harmonics of degree 1");
+  refused([](GltfBuilder& b) { add_degree(b, 2); }, attributes,
+          "expected the attribute KHR_gaussian_splatting:SH_DEGREE_1_COEF_0");
+  refused(
+      [](GltfBuilder& b) {
+        attribute(b, "SH_DEGREE_1_COEF_3") = b.floats({1, 1, 1, 1, 1, 1}, "VEC3", 3);
+      },
+      attributes + "/KHR_gaussian_splatting:SH_DEGREE_1_COEF_3", "expected harmonics of degree 0 to 3");
+  refused([](GltfBuilder& b) { add_degree(b, 4); }, attributes + "/KHR_gaussian_splatting:SH_DEGREE_4_COEF_0",
+          "expected harmonics of degree 0 to 3");
   refused([](GltfBuilder& b) { b.json["nodes"][0]["scale"] = {1, 0, 1}; }, at, "flattens the Gaussians");
 }
 

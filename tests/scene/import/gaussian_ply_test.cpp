@@ -1,6 +1,7 @@
 // Files of 3D Gaussian splatting: what is read of them, and what is said of damaged ones.
 #include "scene/import/gaussian_ply.h"
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -49,12 +50,10 @@ TEST_F(GaussianPly, IsReadWithItsUnits) {
   one.rotation[0] = one.rotation[3] = 7;  // a quarter about z, of any length
   write(gaussian_ply({PlyGaussian{}, one}));
   EXPECT_TRUE(is_gaussian_ply(file_));
-  std::vector<std::string> warnings;
-  const Scene scene = load_gaussian_ply(file_, [&](const std::string& w) { warnings.push_back(w); });
+  const Scene scene = load_gaussian_ply(file_);
   ASSERT_EQ(scene.gaussians.shapes.size(), 2u);
   EXPECT_TRUE(scene.gaussians.display);
-  ASSERT_EQ(warnings.size(), 1u);
-  EXPECT_THAT(warnings[0], testing::HasSubstr("9 coefficients of harmonics above degree 0 are left out"));
+  EXPECT_EQ(scene.gaussians.degree, 1);
   const Gaussian& plain = scene.gaussians.shapes[0];
   EXPECT_EQ(plain.opacity, 0.5f);
   EXPECT_EQ(plain.spread, Mat3(1.0f));
@@ -64,10 +63,36 @@ TEST_F(GaussianPly, IsReadWithItsUnits) {
   EXPECT_NEAR(read.opacity, 0.75f, 1e-6f);
   EXPECT_NEAR(read.color.x, 0.78209479f, 1e-6f);
   EXPECT_EQ(read.color.y, 0.5f);
-  EXPECT_EQ(read.color.z, 0.0f);
-  const Mat3 expected(0, 0.5f, 0, -0.25f, 0, 0, 0, 0, 2);  // columns: x goes to y, y to -x
+  EXPECT_NEAR(read.color.z, 0.5f - 9 * 0.28209479f, 1e-6f);  // the bound at 0 is that of the whole colour
+  const Mat3 expected(0, 0.5f, 0, -0.25f, 0, 0, 0, 0, 2);    // columns: x goes to y, y to -x
   for (int c = 0; c < 3; ++c)
     for (int r = 0; r < 3; ++r) EXPECT_NEAR(read.spread[c][r], expected[c][r], 1e-6f) << c << r;
+}
+
+// A file has all of red, then all of green, then all of blue.
+TEST_F(GaussianPly, HasHarmonicsOfDegree0To3) {
+  PlyGaussian one;
+  for (int i = 0; i < 45; ++i) one.higher[i] = static_cast<float>(i);
+  for (int degree = 0; degree <= 3; ++degree) {
+    write(gaussian_ply({PlyGaussian{}, one}, degree));
+    const Scene scene = load_gaussian_ply(file_);
+    EXPECT_EQ(scene.gaussians.degree, degree);
+    const std::size_t each = higher_harmonics(degree);
+    ASSERT_EQ(scene.gaussians.harmonics.size(), 2 * each);
+    for (std::size_t k = 0; k < each; ++k) {
+      EXPECT_EQ(scene.gaussians.harmonics[k], Vec3(0));
+      const auto first = static_cast<float>(k), channel = static_cast<float>(each);
+      EXPECT_EQ(scene.gaussians.harmonics[each + k], Vec3(first, first + channel, first + 2 * channel));
+    }
+    SceneConfig config;
+    config.file = file_.string();
+    config.gaussians.degree = 1;
+    const GaussianCloud cloud = load_scene(config, "").gaussians;
+    EXPECT_EQ(cloud.degree, std::min(degree, 1));
+    ASSERT_EQ(cloud.harmonics.size(), 2 * higher_harmonics(cloud.degree));
+    for (std::size_t k = 0; k < higher_harmonics(cloud.degree); ++k)
+      EXPECT_EQ(cloud.harmonics[higher_harmonics(cloud.degree) + k], scene.gaussians.harmonics[each + k]);
+  }
 }
 
 TEST_F(GaussianPly, TakesThePlaceOfAMeshOfPoints) {
@@ -120,6 +145,14 @@ TEST_F(GaussianPly, SaysWhatIsWrong) {
             "line 23: expected property float opacity, found type \"double\"");
   EXPECT_EQ(fault_of(replaced(good, "float nx", "list uchar nx")),
             "line 8: expected a property of one number, found type \"list\"");
+  EXPECT_EQ(fault_of(replaced(good, "f_rest_8", "f_rest_9")),
+            "the header has no property float f_rest_8, and it has f_rest_9");
+  EXPECT_EQ(fault_of(replaced(good, "f_rest_8", "f_rest_45")),
+            "line 22: expected f_rest_0 to f_rest_44, found \"f_rest_45\"");
+  EXPECT_EQ(fault_of(replaced(good, "f_rest_8", "other")),
+            "the header has 8 properties f_rest_*; expected 0, 9, 24 or 45, as harmonics of degree 0, 1, 2 or 3 have");
+  EXPECT_EQ(fault_of(replaced(good, "float f_rest_8", "uchar f_rest_8")),
+            "line 22: expected property float f_rest_8, found type \"uchar\"");
   EXPECT_EQ(fault_of(replaced(good, "end_header", "end_heading")), "the header does not end: there is no end_header");
   PlyGaussian bad;
   bad.scale[1] = 200;
@@ -127,6 +160,9 @@ TEST_F(GaussianPly, SaysWhatIsWrong) {
   bad = {};
   bad.rotation[0] = 0;
   EXPECT_EQ(fault_of(gaussian_ply({bad})), "Gaussian 0: rot_0 to rot_3 are 0, which is no rotation");
+  bad = {};
+  bad.higher[4] = INFINITY;
+  EXPECT_EQ(fault_of(gaussian_ply({bad})), "Gaussian 0: f_rest_4 is inf; expected a finite number");
   bad = {};
   bad.y = NAN;
   EXPECT_EQ(fault_of(gaussian_ply({bad})), "Gaussian 0: y is nan; expected a finite number");

@@ -25,13 +25,14 @@ class PacketNeeds {
         two_outputs_(two_outputs),
         broadcasts_(broadcasts) {}
 
-  /// The shapes of a packet's tests, and what is stored of their instance's transform.
+  /// The shapes of a packet's tests, what is stored of their instance's transform, and records of Gaussians.
   ShapeNeed shapes(const Packet& packet, bool transform) const {
     return {loads_treelets()     ? memory_.treelet(packet.key.ref)
             : blocks_ != nullptr ? blocks_->span(packet.key.ref)
             : is_treelet(packet) ? memory_.strip(packet.key)
                                  : memory_.shapes(packet.key, packet.lanes),
-            transform || memory_.reads_record(packet.key) ? memory_.transform(packet.key.instance) : ShapeSpan{}};
+            transform || memory_.reads_record(packet.key) ? memory_.transform(packet.key.instance) : ShapeSpan{},
+            is_treelet(packet) ? memory_.gaussians(packet.key) : memory_.gaussians(packet.key, packet.lanes)};
   }
   /// True if a visit loads a treelet of the whole tree.
   bool loads_treelets() const { return memory_.has_treelets(); }

@@ -99,8 +99,7 @@ void TestContexts::compute(std::size_t place, Cycle at) {
 /// The same behind a distributor, which says when each result is there.
 void TestContexts::distribute(Context& context, Cycle at) {
   const ShapeNeed shapes = parts_.needs.shapes(parts_.machine.packet(context.packet), context.counts.transforms > 0);
-  parts_.tester.distribute(at, context.results.slots, context.counts, shapes[0].bytes + shapes[1].bytes,
-                           context.results.cycles);
+  parts_.tester.distribute(at, context.results.slots, context.counts, shapes.bytes(), context.results.cycles);
   phases_.enter(static_cast<std::size_t>(&context - contexts_.data()), ContextPhase::kComputing,
                 forwards_ ? context.results.first() : context.results.last());
 }

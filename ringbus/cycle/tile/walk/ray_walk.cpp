@@ -27,7 +27,7 @@ void RayWalk::start(accel::NodeKey from, const accel::TreePieces* pieces, bool i
   bytes_ = {};
 }
 
-std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record, std::size_t beyond) {
+std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record, std::size_t beyond, bool tested) {
   if ((record.tag.flags & kRayDone) != 0) {
     // Waiting nodes are forgotten without being read.
     stack_.clear();
@@ -42,7 +42,7 @@ std::optional<accel::NodeKey> RayWalk::next(const RayRecord& record, std::size_t
     depth_ = top.depth;
     return top.key;
   }
-  if (nearest == nullptr || !in_rounds_ || beyond > 0) return std::nullopt;
+  if (nearest == nullptr || !in_rounds_ || beyond > 0 || !tested) return std::nullopt;
   const std::optional<accel::WaitingNode> next = nearest->go_on();
   if (!next) return std::nullopt;
   depth_ = next->depth;

@@ -28,8 +28,9 @@ class RayWalk {
   /// (accel::NearestRay).
   void start(accel::NodeKey from, const accel::TreePieces* pieces, bool in_rounds = false);
   /// The strip that the ray has to be tested against next; nothing when it is through or needs no more tests. The
-  /// oldest `beyond` entries of the stack are not at hand: where nothing else is left, there is nothing either.
-  std::optional<accel::NodeKey> next(const RayRecord& record, std::size_t beyond = 0);
+  /// oldest `beyond` entries of the stack are not at hand: where nothing else is left, there is nothing either. A round
+  /// begins where all strips that next() has given have been `tested`.
+  std::optional<accel::NodeKey> next(const RayRecord& record, std::size_t beyond = 0, bool tested = true);
   /// Tests the ray, the one member of `ray`, against that strip. Returns the tests that the hardware has to make.
   /// Several strips that next() has given may be tested one after another.
   IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);

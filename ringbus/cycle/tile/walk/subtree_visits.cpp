@@ -55,9 +55,9 @@ void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
   }
   if (visit.loaded) return test(index, now);
   const WalkStep& step = visit.ways.steps[ray.step];
-  ShapeNeed need{memory_.has_treelets() ? memory_.treelet(step.key.ref) : memory_.strip(step.key), {}};
-  if (step.tests.tests[UnitKind::kTransform] > 0 || memory_.reads_record(step.key))
-    need[1] = memory_.transform(step.key.instance);
+  const bool reads = step.tests.tests[UnitKind::kTransform] > 0 || memory_.reads_record(step.key);
+  const ShapeNeed need(memory_.has_treelets() ? memory_.treelet(step.key.ref) : memory_.strip(step.key),
+                       reads ? memory_.transform(step.key.instance) : ShapeSpan{}, memory_.gaussians(step.key));
   ray.phase = Ray::Phase::kWaits;
   if (shapes_.take(first_user_ + index, need, now)) test(index, now);
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 #include <unordered_map>
@@ -25,7 +26,8 @@ class LineReads {
   /// Asks for what `task` needs. Returns the number of its lines.
   std::uint32_t ask(std::uint32_t task, const ShapeNeed& need) {
     std::uint32_t lines = 0;
-    for (const ShapeSpan& span : need) {
+    for (std::size_t which = 0; which < need.size(); ++which) {
+      const ShapeSpan& span = need[which];
       if (span.bytes == 0) continue;
       const std::uint64_t last = (span.address + span.bytes - 1) / line_bytes_;
       for (std::uint64_t line = span.address / line_bytes_; line <= last; ++line) lines += add(line, task, span.row);

@@ -85,7 +85,7 @@ void WarpTile::take_new_rays(Cycle now) {
       Ray& ray = rays_[slot];
       ray.id = id;
       ray.done = false;
-      ray.walk.start(accel_.root_key());
+      ray.walk.start(accel_.root_key(), nullptr, true);
       if (follows(slot)) [[unlikely]]
         note(RayFact::Kind::kAdmitted, now, now);
       if (forming_.packs())
@@ -151,8 +151,8 @@ WarpTile::Turn WarpTile::turn(std::uint32_t slot, Cycle now) {
 }
 
 void WarpTile::ask(std::uint32_t slot, accel::NodeKey strip, bool needs_transform) {
-  ShapeNeed need{memory_.strip(strip), {}};
-  if (needs_transform) need[1] = memory_.transform(strip.instance);
+  const ShapeNeed need(memory_.strip(strip), needs_transform ? memory_.transform(strip.instance) : ShapeSpan{},
+                       memory_.gaussians(strip));
   ++rays_[slot].in_test;
   tests_.ask(slot, strip, need);
 }
@@ -167,7 +167,7 @@ void WarpTile::help(std::span<const std::uint32_t> slots, std::uint64_t idle, st
       if (idle == 0) break;
       Ray& ray = rays_[slot];
       const std::uint64_t before = ray.walk.stack_bytes().held;
-      const std::optional<accel::NodeKey> next = ray.walk.next(store_.record(slot), registers_.beyond(slot));
+      const std::optional<accel::NodeKey> next = ray.walk.next(store_.record(slot), registers_.beyond(slot), false);
       registers_.shrink(slot, ray.walk);
       ended_.stacked(before, ray.walk);
       if (!next) continue;
