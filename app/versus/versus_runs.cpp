@@ -101,6 +101,7 @@ class VersusRuns {
                            .memory_bytes_per_ray = memory_bytes(r),
                            .nj_per_ray = r.energy->nj_per_ray,
                            .hits = r.digest.hits,
+                           .nearest = r.nearest ? r.nearest->digest : "",
                            .image = r.digest.image.value_or("")};
       rates.push_back(of.rays_per_kilocycle);
       bytes.push_back(of.memory_bytes_per_ray);
@@ -132,7 +133,8 @@ class VersusRuns {
   /// A machine changes neither hits nor picture.
   static void require_same(const report::Versus& out, const report::VersusRun& run) {
     for (const report::VersusRun& other : out.runs)
-      if (other.seed == run.seed && (other.hits != run.hits || other.image != run.image))
+      if (other.seed == run.seed &&
+          (other.hits != run.hits || other.nearest != run.nearest || other.image != run.image))
         throw SimulationError(
             fmt::format("hits or picture of {} and {} differ with seed {}", other.machine, run.machine, run.seed));
   }

@@ -80,7 +80,7 @@ struct VersusRun {
   std::string machine;
   std::uint64_t seed = 0, rays = 0, cycles = 0;
   double rays_per_kilocycle = 0, memory_bytes_per_ray = 0, nj_per_ray = 0;
-  std::string hits{}, image{};
+  std::string hits{}, nearest{}, image{};
 };
 
 template <class V>
@@ -93,6 +93,7 @@ void describe(V& v, const VersusRun& r) {
   v.field("memory_bytes_per_ray", r.memory_bytes_per_ray, "bytes/ray", "bytes from and to memory");
   v.field("nj_per_ray", r.nj_per_ray, "nJ/ray", "energy");
   v.field("hits", r.hits, "", "digest of the hits, which is the same for all machines");
+  v.field("nearest", r.nearest, "", "digest of all hits of rays that look for several, likewise; empty if none do");
   v.field("image", r.image, "", "digest of the picture, likewise; empty for a list of rays");
 }
 

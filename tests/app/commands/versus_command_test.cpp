@@ -1,5 +1,7 @@
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -65,6 +67,32 @@ TEST(VersusCommand, RefusesWhatHasNoTwin) {
   EXPECT_THAT(error({"--set", "topology.shape=independent", "--set", "testers.simt.warp=32"}),
               HasSubstr("this machine is the conventional one itself"));
   EXPECT_THAT(error({"--seeds", "0"}), HasSubstr("--seeds"));
+}
+
+// Twins have warps, whose rays make rounds as well; a machine and its twin find the same hits and blend the same light.
+TEST(VersusCommand, ComparesRaysThatLookForSeveralHits) {
+  const std::string machine =
+      "image: {width: 12, height: 8, samples: 1, max_depth: 1}\nengine: {kind: cycle}\ntopology: {resources: 2}\n"
+      "collections: {traversal: ordered, when_full: spill}\n";
+  const std::vector<std::string> texts{
+      "scene: {builtin: instances, instances: 60}\nrays: {slots_per_resource: 64, query: {nearest: 8}}\n",
+      "scene: {builtin: instances, instances: 60}\n"
+      "rays: {slots_per_resource: 64, query: {nearest: 8, buffer: 3, rounds: resume}}\n",
+      "scene: {builtin: gaussians, gaussians: {count: 150, degree: 2, geometry: triangles}}\n"
+      "rays: {slots_per_resource: 64, query: {nearest: 200, buffer: 4}}\n",
+      "scene: {builtin: gaussians, gaussians: {count: 150}}\n"
+      "rays: {slots_per_resource: 64, query: {nearest: 200, buffer: 4, rounds: resume}}\n"};
+  for (const std::string& text : texts) {
+    const Program program;
+    program.write("a.yaml", text + machine);
+    const Outcome outcome = program.run({"versus", "a.yaml", "--seeds", "1", "--no-search", "--out", "o"});
+    ASSERT_EQ(outcome.status, 0) << text << outcome.err;
+    const Json json = Json::parse(program.read("o/versus.json"));
+    ASSERT_GE(json["runs"].size(), 2u);
+    EXPECT_NE(json["runs"][0]["nearest"], "");
+    for (const Json& run : json["runs"])
+      for (const char* digest : {"hits", "nearest", "image"}) EXPECT_EQ(run[digest], json["runs"][0][digest]) << text;
+  }
 }
 
 // By hand: ratios 2 and 8 have the geometric mean 4; with two values t is 12.71 and the error of the mean half of

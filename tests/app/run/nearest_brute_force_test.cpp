@@ -32,7 +32,8 @@ const std::vector<Machine>& machines() {
       {"engine.kind=cycle topology.shape=bidirectional topology.resources=4 packets.shapes=single", false},
       {"engine.kind=cycle collections.traversal=treelet bvh.treelet_triangles=16 bvh.builder=spatial", false},
       {"engine.kind=cycle topology.resources=3 bvh.treelets.bytes=1024", false},
-      {"engine.kind=cycle topology.shape=independent testers.simt.warp=8 testers.simt.idle_lanes=help", false},
+      {"engine.kind=cycle topology.shape=independent testers.simt.warp=8 testers.simt.idle_lanes=help", true},
+      {"engine.kind=cycle topology.shape=independent testers.simt.warp=4 testers.simt.stack_entries=2", true},
       {"engine.kind=native collections.traversal=treelet bvh.treelet_triangles=64 engine.simd=ssse3", false},
       {"engine.kind=native collections.traversal=treelet engine.lanes=rays", false},
   };

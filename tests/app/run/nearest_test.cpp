@@ -156,7 +156,6 @@ TEST(Nearest, RefusesWhatIsNotBuilt) {
        "rays.query.nearest: with fewer than rays.query.nearest = 65 a ray finds its hits in rounds; "
        "expected at most 64, or collections.traversal: ordered"},
       {"rays.query.buffer=2", "expected auto, or collections.traversal: ordered"},
-      {"rays.query.buffer=2 topology.shape=independent testers.simt.warp=8", "testers.simt.warp: 0"},
       {"bundles.size=8", "bundles.size: rays of bundles share one bound"},
       {"primary=raster", "primary: rasterised camera rays have one hit each"},
       {"rays.query.rounds=resum", "did you mean 'resume'?"},
