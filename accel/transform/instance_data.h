@@ -3,6 +3,7 @@
 #include <cstdint>
 
 #include "core/config/fields/accuracy.h"
+#include "core/costs/operations.h"
 
 namespace carousel::accel {
 
@@ -31,10 +32,11 @@ inline std::uint32_t promoted_bytes(AccuracyConfig c) {
 /// Bytes of a ray in model space, which `transformed_ray: store` keeps beside the record: origin and direction.
 inline constexpr std::uint32_t kTransformedRayBytes = 6 * 4;
 
-/// Transforms whose time an inversion takes in the transform unit. A transform is 18 products, R^-1 times an origin
-/// and a direction; R^-1 by cofactors is 18 for the nine, 3 for the determinant and 9 to scale them, with one
-/// reciprocal: 30, two passes through the same multipliers. The inverse of the whole matrix, which `inverse_matrix`
-/// needs, has R^-1 T besides, 9 more: three passes (US 12394134, paragraph 25: the two steps need no full inverse).
-inline constexpr std::uint64_t kInversionPasses = 2, kFullInversionPasses = 3;
+/// Transforms whose time an inversion takes in the transform unit. A transform is R^-1 times an origin and a direction;
+/// R^-1 by cofactors is 18 products for the nine, 3 for the determinant and 9 to scale them, with one reciprocal: two
+/// passes through the same multipliers. The inverse of the whole matrix, which `inverse_matrix` needs, has R^-1 T
+/// besides, 9 more: three passes (US 12394134, paragraph 25: the two steps need no full inverse).
+inline constexpr std::uint64_t kInversionPasses = passes_through(Method::kTwoStep, Method::kInversion),
+                               kFullInversionPasses = passes_through(Method::kTwoStep, Method::kFullInversion);
 
 }  // namespace carousel::accel

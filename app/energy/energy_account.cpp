@@ -49,6 +49,7 @@ EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<B
       drawn_(ringbus::plan_parcels(config.topology, config.memory.line_bytes)),
       link_mm_(link_mm),
       costs_(costs_of(config)),
+      work_(work_prices(config)),
       rows_(std::move(rows)),
       wire_mm_(lengths(config, drawn_, link_mm)),
       rays_kib_(mean(config, [](const OwnSections& one) { return one.rays.slots_per_resource; }) *
@@ -62,6 +63,14 @@ EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<B
           config.shading.program.any()
               ? static_cast<double>(shade_programs(config.shading, config.programs, config.testers).store_bytes) / 1024
               : 0) {}
+
+EnergyAccount::WorkPrices EnergyAccount::work_prices(const Config& config) {
+  const auto of = [&](UnitKind kind, Method method, bool wide) { return work_pj(config, kind, method, wide); };
+  const bool wide = config.accuracy.transform == TransformLevel::kTwoStepDouble;
+  return {of(UnitKind::kTriangle, Method::kWatertight, true),     of(UnitKind::kTriangle, Method::kExactVolume, true),
+          of(UnitKind::kTransform, Method::kTwoStep, true),       of(UnitKind::kTransform, Method::kInversion, wide),
+          of(UnitKind::kTransform, Method::kFullInversion, wide), of(UnitKind::kTransform, Method::kInversion, true)};
+}
 
 /// Adds up the energy of some events.
 class EnergyAccount::Sum {
@@ -115,6 +124,7 @@ class EnergyAccount::Sum {
       parts_.units[UnitKind::kHitBuffer].add_work(kChannels * static_cast<double>(of.color_terms),
                                                   pj(Cost::kProductInstruction));
     divisions(static_cast<double>(of.tests.transforms));
+    beside_tests(of.tests);
     if (of.tests.programs > 0) instructions(of.tests);
     access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
     access(EnergyPart::kRayStore, static_cast<double>(of.buffer_bytes), a_.rays_kib_);
@@ -125,6 +135,20 @@ class EnergyAccount::Sum {
     if (of.stack_bytes > 0)
       access(EnergyPart::kStacks, static_cast<double>(of.stack_bytes),
              of.warps ? register_kib(a_.c_, number) : a_.rays_kib_);
+  }
+
+  /// Triangles that are tested again in 64 bits, exact volumes, transforms in 64 bits instead of 32, and inversions.
+  void beside_tests(const IntersectionCounts& tests) {
+    const auto add = [&](UnitKind kind, std::uint64_t times, double each) {
+      parts_.units[kind].add_work(static_cast<double>(times), each);
+    };
+    add(UnitKind::kTriangle, tests.refined, a_.work_.refined);
+    add(UnitKind::kTriangle, tests.exact_volumes, a_.work_.exact_volume);
+    add(UnitKind::kTransform, tests.transforms_in_double, a_.work_.transform_in_double - pj(Cost::kTransform));
+    add(UnitKind::kTransform, tests.inversions - tests.full_inversions - tests.inversions_in_double,
+        a_.work_.inversion);
+    add(UnitKind::kTransform, tests.full_inversions, a_.work_.full_inversion);
+    add(UnitKind::kTransform, tests.inversions_in_double, a_.work_.inversion_in_double);
   }
 
   /// Reciprocals of the directions of so many rays: a box test multiplies by them.

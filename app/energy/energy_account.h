@@ -26,11 +26,17 @@ class EnergyAccount {
 
  private:
   class Sum;
+  /// Picojoules of what units do beside their tests.
+  struct WorkPrices {
+    double refined, exact_volume, transform_in_double, inversion, full_inversion, inversion_in_double;
+  };
+  static WorkPrices work_prices(const Config& config);
 
   const Config& c_;
   ringbus::ParcelPlan drawn_;
   double link_mm_;
   Costs costs_;
+  WorkPrices work_;
   std::vector<ByteRow> rows_;
   std::vector<double> wire_mm_;  // by link
   double rays_kib_, collections_kib_, buffer_kib_, l1_kib_, l2_kib_;

@@ -130,6 +130,8 @@ constexpr Row kRows[] = {
     {"bvh.leaves", kCycle},
     {"accuracy.spawn", kPicture},
     {"accuracy.transform", kTransforms},
+    {"accuracy.products", kCycle},
+    {"accuracy.products", kProfile},
     {"accuracy.transformed_ray", kTransforms},
     {"accuracy.transformed_ray", kCycle},
     {"accuracy.instance_data", kTransforms},

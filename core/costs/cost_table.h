@@ -5,52 +5,98 @@
 #include <string_view>
 
 #include "core/costs/cost_row.h"
+#include "core/costs/operations.h"
 #include "core/types/unit_kind.h"
 
 namespace carousel {
 
-/// The one table. A product and a sum of 32-bit numbers are 3.7 and 0.9 pJ at 45 nm (Horowitz, ISSCC 2014), and 1.31
-/// and 0.4 pJ at 7 nm (Jouppi et al., ISCA 2021). A unit of 28 nm (GauTracer, HPCA 2026, Table III) is scaled by
-/// (45/28)² to 45 nm, and by 0.15 to 7 nm, which assumes a half from 28 to 16 nm and 0.3 from there.
+namespace cost_detail {
+
+/// A text that is put together when the program is compiled.
+class SourceText {
+ public:
+  constexpr SourceText& add(std::string_view text) {
+    for (const char c : text) chars_[size_++] = c;
+    return *this;
+  }
+  constexpr SourceText& add(int number) {
+    if (number >= 10) add(number / 10);
+    chars_[size_++] = static_cast<char>('0' + number % 10);
+    return *this;
+  }
+  /// A number of operations, behind a comma unless it comes first; none if it is 0.
+  constexpr SourceText& count(int number, std::string_view one) {
+    if (number == 0) return *this;
+    if (size_ > 0) add(", ");
+    add(number).add(" ").add(one);
+    return number == 1 ? *this : add("s");
+  }
+  constexpr std::string_view view() const { return {chars_.data(), size_}; }
+
+ private:
+  std::array<char, 112> chars_{};
+  std::size_t size_ = 0;
+};
+
+/// The operations of each method, with a source of their prices.
+constexpr auto sources(std::string_view prices) {
+  std::array<SourceText, kMethods.size()> out{};
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    const Operations& o = kMethods[i].operations;
+    out[i].count(o.products, "product").count(o.sums, "sum").count(o.comparisons, "comparison");
+    out[i].count(o.divisions, "division").add("; ").add(prices);
+  }
+  return out;
+}
+inline constexpr auto kSources45 = sources(cost_sources::kHorowitz),
+                      kSources7 = sources("Jouppi et al., ISCA 2021, Table 2");
+
+constexpr CostValue joules45(Method method, Basis basis) {
+  return {static_cast<float>(energy_of(method, kPicojoules45)), basis,
+          kSources45[static_cast<std::size_t>(method)].view()};
+}
+constexpr CostValue joules7(Method method, Basis basis) {
+  return {static_cast<float>(energy_of(method, kPicojoules7)), basis,
+          kSources7[static_cast<std::size_t>(method)].view()};
+}
+/// An area in proportion to that of a box unit, to three digits.
+constexpr CostValue beside_box(float box_mm2, Method method) {
+  const double mm2 = static_cast<double>(box_mm2) * area_mm2(method) / area_mm2(Method::kSlab);
+  const double digits = mm2 < 0.01 ? 1e5 : mm2 < 0.1 ? 1e4 : 1e3;
+  return {static_cast<float>(static_cast<double>(static_cast<int>(mm2 * digits + 0.5)) / digits), Basis::kAssumed,
+          "a box unit's, by the areas of their operations: Dally, NIPS 2015"};
+}
+
+}  // namespace cost_detail
+
+/// The one table. Operations and their prices stand in core/costs/operations.h. A unit of 28 nm (GauTracer, HPCA 2026,
+/// Table III) is scaled by (45/28)² to 45 nm, and by 0.15 to 7 nm, which assumes a half from 28 to 16 nm and 0.3 from
+/// there.
 inline constexpr auto kCostTable = [] {
   using enum Basis;
   using namespace cost_sources;
-  constexpr auto kOperations45 = [](float pj, std::string_view count) { return CostValue{pj, kDerived, count}; };
   constexpr std::string_view kE = "energy", kA = "area";
-  const CostValue scaled_from_box45{0.126f, kAssumed, "as a box unit"},
-      scaled_from_box7{0.0073f, kAssumed, "as a box unit"};
-  constexpr auto kOps = kOperations45;
+  using namespace cost_detail;
+  constexpr float kBox45 = 0.126f, kBox7 = 0.0073f;
+  const CostValue as_box45{kBox45, kAssumed, "as a box unit"}, as_box7{kBox7, kAssumed, "as a box unit"};
   return std::to_array<CostRow>({
-      {Cost::kBoxTest, kE, "box", "pJ", "A test of a ray against a box.",
-       kOps(29, "6 products, 6 sums, 10 comparisons; Horowitz, ISSCC 2014"),
-       kOps(10, "6 products, 6 sums, 10 comparisons; Jouppi et al., ISCA 2021, Table 2")},
+      {Cost::kBoxTest, kE, "box", "pJ", "A test of a ray against a box.", joules45(Method::kSlab, kDerived),
+       joules7(Method::kSlab, kDerived)},
       {Cost::kTriangleTest, kE, "triangle", "pJ", "A test of a ray against a triangle.",
-       kOps(98, "a watertight test's products and sums; Horowitz, ISSCC 2014"),
-       kOps(36, "a watertight test's products and sums; Jouppi et al., ISCA 2021, Table 2")},
-      {Cost::kPlaneTest,
-       kE,
-       "plane",
-       "pJ",
-       "A test of a ray against a cull plane.",
-       {30.4f, kAssumed, "7 products, 5 sums; Horowitz, ISSCC 2014"},
-       {11.2f, kAssumed, "7 products, 5 sums; Jouppi et al., ISCA 2021, Table 2"}},
-      {Cost::kBundleTest,
-       kE,
-       "bundle",
-       "pJ",
-       "A test of a bundle by intervals, without its divisions.",
-       {29, kAssumed, "6 products, 6 sums, 10 comparisons, as a box; Horowitz, ISSCC 2014"},
-       {10, kAssumed, "6 products, 6 sums, 10 comparisons, as a box; Jouppi et al., ISCA 2021, Table 2"}},
-      {Cost::kTransform, kE, "transform", "pJ", "A ray brought to model space.",
-       kOps(80.1f, "18 products, 15 sums; Horowitz, ISSCC 2014"),
-       kOps(29.6f, "18 products, 15 sums; Jouppi et al., ISCA 2021, Table 2")},
+       joules45(Method::kWatertight, kDerived), joules7(Method::kWatertight, kDerived)},
+      {Cost::kPlaneTest, kE, "plane", "pJ", "A test of a ray against a cull plane.", joules45(Method::kPlane, kDerived),
+       joules7(Method::kPlane, kDerived)},
+      {Cost::kBundleTest, kE, "bundle", "pJ", "A test of a bundle by intervals, without its divisions.",
+       joules45(Method::kIntervals, kDerived), joules7(Method::kIntervals, kDerived)},
+      {Cost::kTransform, kE, "transform", "pJ", "A ray brought to model space.", joules45(Method::kTwoStep, kDerived),
+       joules7(Method::kTwoStep, kDerived)},
       {Cost::kProceduralTest,
        kE,
        "procedural",
        "pJ",
        "A test of a ray against a procedural primitive.",
-       {98, kAssumed, "as a triangle"},
-       {36, kAssumed, "as a triangle"}},
+       {joules45(Method::kWatertight, kAssumed).value, kAssumed, "as a triangle"},
+       {joules7(Method::kWatertight, kAssumed).value, kAssumed, "as a triangle"}},
       {Cost::kAnyHitTest,
        kE,
        "any_hit_unit",
@@ -79,13 +125,8 @@ inline constexpr auto kCostTable = [] {
        "A block of compressed triangles decoded.",
        {14.4f, kAssumed, "48 sums of 32-bit integers, a shift as two; Horowitz, ISSCC 2014"},
        {4.3f, kAssumed, "48 sums of 32-bit integers, a shift as two; Jouppi et al., ISCA 2021, Table 2"}},
-      {Cost::kReciprocal,
-       kE,
-       "reciprocal",
-       "pJ",
-       "A division: for a bundle, and of the three reciprocals of a ray.",
-       {18.4f, kAssumed, "four products and sums, as of two steps of Newton; Horowitz, ISSCC 2014"},
-       {6.84f, kAssumed, "four products and sums, as of two steps of Newton; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kReciprocal, kE, "reciprocal", "pJ", "A division: for a bundle, and of the three reciprocals of a ray.",
+       joules45(Method::kDivision, kAssumed), joules7(Method::kDivision, kAssumed)},
       {Cost::kHop,
        kE,
        "hop",
@@ -156,9 +197,13 @@ inline constexpr auto kCostTable = [] {
        "A ray shaded as a plain surface or a miss.",
        {736, kAssumed, "160 products and sums, no instruction counted; Horowitz, ISSCC 2014"},
        {274, kAssumed, "160 products and sums, no instruction counted; Jouppi et al., ISCA 2021, Table 2"}},
-      {Cost::kProduct, kE, "product", "pJ", "A product and a sum of a surface's effects.",
-       kOps(4.6f, "a product and a sum; Horowitz, ISSCC 2014"),
-       kOps(1.71f, "a product and a sum; Jouppi et al., ISCA 2021, Table 2")},
+      {Cost::kProduct,
+       kE,
+       "product",
+       "pJ",
+       "A product and a sum of a surface's effects.",
+       {4.6f, kDerived, "a product and a sum; Horowitz, ISSCC 2014"},
+       {1.71f, kDerived, "a product and a sum; Jouppi et al., ISCA 2021, Table 2"}},
       {Cost::kLookup,
        kE,
        "lookup",
@@ -196,20 +241,11 @@ inline constexpr auto kCostTable = [] {
        "A branch likewise.",
        {5.9f, kAssumed, "as a simple instruction"},
        {2.4f, kAssumed, "as a simple instruction"}},
-      {Cost::kSilhouetteTest,
-       kE,
-       "silhouette",
-       "pJ",
-       "A test of a bundle by the silhouette of a box, without its edges.",
-       {17.3f, kAssumed, "6 sums, 3 products and 6 comparisons, of ways and of the range; Horowitz, ISSCC 2014"},
-       {6.6f, kAssumed, "6 sums, 3 products and 6 comparisons, likewise; Jouppi et al., ISCA 2021, Table 2"}},
-      {Cost::kEdgeTest,
-       kE,
-       "edge",
-       "pJ",
-       "A test of a bundle against an edge of a silhouette.",
-       {8.3f, kAssumed, "2 products and a comparison, as a sum; Horowitz, ISSCC 2014"},
-       {3.02f, kAssumed, "2 products and a comparison, as a sum; Jouppi et al., ISCA 2021, Table 2"}},
+      {Cost::kSilhouetteTest, kE, "silhouette", "pJ",
+       "A test of a bundle by the silhouette of a box, without its edges.", joules45(Method::kSilhouette, kDerived),
+       joules7(Method::kSilhouette, kDerived)},
+      {Cost::kEdgeTest, kE, "edge", "pJ", "A test of a bundle against an edge of a silhouette.",
+       joules45(Method::kEdge, kDerived), joules7(Method::kEdge, kDerived)},
       {Cost::kPrefetchVote,
        kE,
        "prefetch_vote",
@@ -222,8 +258,8 @@ inline constexpr auto kCostTable = [] {
        "box",
        "mm2",
        "A unit that tests boxes.",
-       {0.126f, kDerived, "48,630 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"},
-       {0.0073f, kAssumed, "48,630 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"}},
+       {kBox45, kDerived, "48,630 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"},
+       {kBox7, kAssumed, "48,630 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"}},
       {Cost::kTriangleUnit,
        kA,
        "triangle",
@@ -231,16 +267,12 @@ inline constexpr auto kCostTable = [] {
        "A unit that tests triangles.",
        {0.193f, kDerived, "74,577 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"},
        {0.0112f, kAssumed, "74,577 µm² at 28 nm: GauTracer, HPCA 2026, Table III; scaled"}},
-      {Cost::kPlaneUnit, kA, "plane", "mm2", "A unit that tests cull planes.", scaled_from_box45, scaled_from_box7},
-      {Cost::kBundleUnit,
-       kA,
-       "bundle",
-       "mm2",
+      {Cost::kPlaneUnit, kA, "plane", "mm2", "A unit that tests cull planes.", beside_box(kBox45, Method::kPlane),
+       beside_box(kBox7, Method::kPlane)},
+      {Cost::kBundleUnit, kA, "bundle", "mm2",
        "A unit that tests bundles by intervals. By silhouettes it is one of area.silhouette, with an area.edge for "
-       "each "
-       "edge that it tests at once.",
-       {0.126f, kAssumed, "as a box unit, by its products"},
-       {0.0073f, kAssumed, "as a box unit, by its products"}},
+       "each edge that it tests at once.",
+       beside_box(kBox45, Method::kIntervals), beside_box(kBox7, Method::kIntervals)},
       {Cost::kTransformUnit,
        kA,
        "transform",
@@ -255,8 +287,8 @@ inline constexpr auto kCostTable = [] {
        "A unit that tests procedural primitives.",
        {0.193f, kAssumed, "as a triangle unit"},
        {0.0112f, kAssumed, "as a triangle unit"}},
-      {Cost::kAnyHitUnit, kA, "any_hit_unit", "mm2", "A unit that decides on non-opaque primitives.", scaled_from_box45,
-       scaled_from_box7},
+      {Cost::kAnyHitUnit, kA, "any_hit_unit", "mm2", "A unit that decides on non-opaque primitives.", as_box45,
+       as_box7},
       {Cost::kMicromapUnit,
        kA,
        "micromap_unit",
@@ -278,13 +310,8 @@ inline constexpr auto kCostTable = [] {
        "A unit that decodes compressed triangles.",
        {0.0126f, kAssumed, "a tenth of a box unit: 12 integer sums and shifts a cycle"},
        {0.00073f, kAssumed, "a tenth of a box unit: 12 integer sums and shifts a cycle"}},
-      {Cost::kReciprocalUnit,
-       kA,
-       "reciprocal",
-       "mm2",
-       "A unit that divides for bundles.",
-       {0.084f, kAssumed, "two thirds of a box unit: four products, as of two steps of Newton"},
-       {0.0049f, kAssumed, "two thirds of a box unit: four products, as of two steps of Newton"}},
+      {Cost::kReciprocalUnit, kA, "reciprocal", "mm2", "A unit that divides for bundles.",
+       beside_box(kBox45, Method::kDivision), beside_box(kBox7, Method::kDivision)},
       {Cost::kSramArea,
        kA,
        "sram",
@@ -313,20 +340,12 @@ inline constexpr auto kCostTable = [] {
        "The place that a wire of a link takes, beside the next one.",
        {0.28f, kAssumed, "twice the least pitch of a metal in the middle"},
        {0.08f, kAssumed, "twice the least pitch of a metal in the middle"}},
-      {Cost::kSilhouetteUnit,
-       kA,
-       "silhouette",
-       "mm2",
+      {Cost::kSilhouetteUnit, kA, "silhouette", "mm2",
        "The part of a unit that tests bundles by silhouettes which does not test edges.",
-       {0.063f, kAssumed, "half of a box unit, by its products"},
-       {0.0037f, kAssumed, "half of a box unit, by its products"}},
-      {Cost::kEdgeUnit,
-       kA,
-       "edge",
-       "mm2",
+       beside_box(kBox45, Method::kSilhouette), beside_box(kBox7, Method::kSilhouette)},
+      {Cost::kEdgeUnit, kA, "edge", "mm2",
        "The part of it that tests an edge: one with bundles.edges: serial, six with parallel.",
-       {0.042f, kAssumed, "a third of a box unit, by its products"},
-       {0.0024f, kAssumed, "a third of a box unit, by its products"}},
+       beside_box(kBox45, Method::kEdge), beside_box(kBox7, Method::kEdge)},
   });
 }();
 

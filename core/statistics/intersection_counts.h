@@ -12,7 +12,7 @@ struct IntersectionCounts {
   std::uint64_t full_inversions = 0, extra_box_hits = 0, micromap_lookups = 0, micromap_known = 0, buffer_steps = 0,
                 decoded = 0;
   std::uint64_t programs = 0, program_cycles = 0;
-  std::uint64_t silhouettes = 0, edges = 0, reciprocals = 0;
+  std::uint64_t silhouettes = 0, edges = 0, reciprocals = 0, inversions_in_double = 0;
   std::uint64_t simple_instructions = 0, product_instructions = 0, divide_instructions = 0, branch_instructions = 0;
 
   static constexpr auto counters() {
@@ -42,6 +42,8 @@ struct IntersectionCounts {
         Counter{"full_inversions", &C::full_inversions, "tests",
                 "those of the inversions that computed the inverse of the whole matrix, translation and all, with "
                 "accuracy.transform: inverse_matrix"},
+        Counter{"inversions_in_double", &C::inversions_in_double, "tests",
+                "those of the inversions that are made in 64 bits because the matrix is nearly singular"},
         Counter{"exact_volumes", &C::exact_volumes, "volumes",
                 "volumes that accuracy.triangle: exact computed in exact arithmetic, as doubles did not decide: four a "
                 "triangle test at most"},

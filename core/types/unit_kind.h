@@ -63,7 +63,7 @@ inline constexpr auto kUnitKinds = std::to_array<UnitKindRow>({
      &IntersectionCounts::box, Stage::kNode, Shown::kAlways},
     {UnitKind::kTriangle, "triangle", "triangle", "triangle_tests", "Units that test a ray against a triangle.", 1, 1,
      37, &IntersectionCounts::triangle, Stage::kPrimitive, Shown::kAlways},
-    {UnitKind::kPlane, "plane", "plane", "plane_tests", "Units that test a ray against a cull plane.", 4, 1, 5,
+    {UnitKind::kPlane, "plane", "plane", "plane_tests", "Units that test a ray against a cull plane.", 4, 1, 22,
      &IntersectionCounts::plane, Stage::kNode, Shown::kCullPlanes},
     {UnitKind::kBundle, "bundle", "bundle", "bundle_tests",
      "Units that test a bundle of rays against a box or the box of a primitive.", 1, 1, 13, &IntersectionCounts::bundle,

@@ -44,12 +44,19 @@ struct AccuracyConfig {
   TransformLevel transform = TransformLevel::kTwoStep;
   SpawnOffset spawn = SpawnOffset::kBound;
   // These describe the hardware of the cycle engine; no hit depends on them.
+  enum class Products { kSeparate, kFused } products = Products::kSeparate;
   enum class TransformedRay { kRecompute, kStore } transformed_ray = TransformedRay::kRecompute;
   enum class InstanceData { kForward, kRt, kInverse };
   std::optional<InstanceData> instance_data;  ///< absent: as `transform` reads
   enum class Invert { kBuild, kVisit };
   std::optional<Invert> invert;  ///< absent: as `instance_data` needs
 };
+
+template <>
+inline constexpr auto kEnumNames<AccuracyConfig::Products> = [] {
+  using enum AccuracyConfig::Products;
+  return names<AccuracyConfig::Products>({{kSeparate, "separate"}, {kFused, "fused"}});
+}();
 
 template <>
 inline constexpr auto kEnumNames<AccuracyConfig::TransformedRay> = [] {
@@ -88,6 +95,11 @@ void describe(V& v, AccuracyConfig& c) {
   v.choice("spawn", c.spawn,
            "The distance of a new ray's origin from its surface: 1e-4 scene units (epsilon), 256 ulp (Waechter, Binder "
            "2019), or as far as rounding can reach (bound).");
+  v.choice(
+       "products", c.products,
+       "The units have multipliers and adders (separate), or add where they multiply if the method allows it (fused): "
+       "joules and areas differ, hits and cycles do not.")
+      .only(EngineKind::kCycle, "price of fused products", AccuracyConfig::Products::kFused);
   v.choice("transformed_ray", c.transformed_ray,
            "A ray is brought to model space at each visit, or once for an instance and kept there (24 bytes).")
       .only(EngineKind::kCycle, "choice of where model-space rays are kept", AccuracyConfig::TransformedRay::kStore);

@@ -3,19 +3,16 @@
 #include <cstdint>
 
 #include "accel/transform/instance_data.h"
+#include "core/costs/operations.h"
 #include "core/types/unit_kind.h"
 
 namespace carousel::ringbus::cycle {
-
-/// Passes of a test in 64 bits through a unit built for 32 bits: a product of two 53-bit significands is four products
-/// of 27 bits.
-inline constexpr std::int64_t kDoublePasses = 4;
 
 /// Tests in 64 bits whose time an exact volume takes in the triangle unit. The volume of three differences of floats,
 /// each a double and a rest, is 3 x (8 + 16) products of two doubles with their rounding errors for a side, and
 /// 3 x (8 + 32) for the depth, whose third factor has a rest as well: 84 in the mean of the four, two products of 64
 /// bits each (accel/exact/exact_triangle.cpp). A double test has 21.
-inline constexpr std::uint64_t kExactVolumeTests = 8;
+inline constexpr std::uint64_t kExactVolumeTests = passes_through(Method::kFilteredTriangle, Method::kExactVolume);
 
 /// Passes through the units of a kind that the tests in `counts` need: one for each test. A triangle that a ray meets
 /// in 32 bits is tested again in 64, for its distance, and exact volumes take their tests; a transform for a nearly
@@ -32,8 +29,8 @@ inline std::uint64_t passes_of(UnitKind kind, const IntersectionCounts& counts) 
 /// Passes through the transform units ahead of that, for the inversions of an instance's matrix.
 inline std::uint64_t inversion_passes(const IntersectionCounts& counts) {
   constexpr std::uint64_t more = accel::kFullInversionPasses - accel::kInversionPasses;
-  return (accel::kInversionPasses * counts.inversions + more * counts.full_inversions) *
-         (counts.transforms_in_double > 0 ? kDoublePasses : 1);
+  return accel::kInversionPasses * (counts.inversions + (kDoublePasses - 1) * counts.inversions_in_double) +
+         more * counts.full_inversions;
 }
 
 /// The passes that the tests of a single ray need at one strip. A strip has at most 128 triangles (eight leaves of 16

@@ -69,6 +69,7 @@ class TransformAccount {
   void invert(std::uint32_t instance, IntersectionCounts& counts) const {
     counts.inversions = forward_ && !accel_.instances[instance].transform.transposed;
     counts.full_inversions = full_ && !in_double(instance) ? counts.inversions : 0;
+    counts.inversions_in_double = in_double(instance) ? counts.inversions : 0;
   }
 
   const TransformedRayBytes& bytes() const { return bytes_; }

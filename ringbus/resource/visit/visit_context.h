@@ -47,6 +47,7 @@ class TransformCharge {
     counts.transforms_in_double = charged_.transforms_in_double;
     counts.inversions = charged_.inversions;
     counts.full_inversions = charged_.full_inversions;
+    counts.inversions_in_double = charged_.inversions_in_double;
   }
 
  private:

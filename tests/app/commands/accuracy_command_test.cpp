@@ -99,10 +99,10 @@ void areas_and_energies_follow_the_levels(const Json& report) {
   EXPECT_EQ(base.at("unit_area_over_default"), 1);
   EXPECT_GT(base.at("unit_area_mm2"), 0);
   const Json& wide = level(report, "double", "double", "two_step");
-  // By hand, in mm^2: four box units of 0.0713 or, in 64 bits, 0.1139; a triangle unit of 0.4469, which tests in 64
+  // By hand, in mm^2: four box units of 0.0727 or, in 64 bits, 0.1166; a triangle unit of 0.5243, which tests in 64
   // bits at both levels (watertight does what a ray meets again); a transform unit of 0.2014.
-  EXPECT_NEAR(base.at("unit_area_mm2").get<double>(), 4 * 0.0713 + 0.4469 + 0.2014, 0.0005);
-  EXPECT_NEAR(wide.at("unit_area_over_default").get<double>(), 1.1826, 0.0005);
+  EXPECT_NEAR(base.at("unit_area_mm2").get<double>(), 4 * 0.0727 + 0.5243 + 0.2014, 0.0005);
+  EXPECT_NEAR(wide.at("unit_area_over_default").get<double>(), 1.1731, 0.0005);
   EXPECT_GT(wide.at("energy_pj_per_ray").get<double>(), 1.5 * base.at("energy_pj_per_ray").get<double>());
 }
 
@@ -110,13 +110,13 @@ void exact_pays_for_its_fall_back(const Json& report) {
   EXPECT_EQ(level(report, "double", "double", "two_step").at("exact_volumes_per_ray"), 0);
   const Json& exact = level(report, "exact", "double", "two_step");
   EXPECT_GT(exact.at("exact_volumes_per_ray"), 0);
-  // Its tests are those of `double`, in another order, and the volumes: 168 products of 27-bit multipliers in four
-  // passes.
+  // Its tests are those of `double`, in another order and without a division, and the volumes: 168 products of 27-bit
+  // multipliers in four passes.
   AccuracyConfig accuracy;
   accuracy.triangle = TriangleLevel::kExact;
   EXPECT_GT(app::test_energy_pj({.exact_volumes = 1}, accuracy), 168 * 4 * 3.7);
   EXPECT_GT(exact.at("energy_pj_per_ray").get<double>(),
-            0.99 * level(report, "double", "double", "two_step").at("energy_pj_per_ray").get<double>());
+            0.9 * level(report, "double", "double", "two_step").at("energy_pj_per_ray").get<double>());
 }
 
 void what_loses_rays_of_a_hard_case_is_not_safe_and_not_recommended(const Json& report) {

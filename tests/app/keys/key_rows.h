@@ -158,6 +158,7 @@ inline std::vector<KeyRow> key_rows() {
       {"accuracy.box", kCornell},
       {"accuracy.transform", kLayers},
       {"accuracy.spawn", kInstances},
+      {"accuracy.products", kInstances, {"energy.profile=n45"}},
       {"accuracy.transformed_ray", kInstances},
       {"accuracy.instance_data", kInstances, {"accuracy.instance_data=rt"}, {"forward"}},
       {"accuracy.instance_data",

@@ -42,13 +42,13 @@ TEST_F(BundlePrices, AreThoseOfTheOperationsOfTheirForm) {
   EXPECT_EQ(parallel["digest"], interval["digest"]);
   EXPECT_EQ(tests(interval, "silhouettes"), 0);
   EXPECT_EQ(tests(interval, "edges"), 0);
-  EXPECT_NEAR(pj(interval, "bundle_tests"), 29 * tests(interval, "bundle"), 1);
+  EXPECT_NEAR(pj(interval, "bundle_tests"), 28.6 * tests(interval, "bundle"), 1);
   for (const Json* r : {&serial, &parallel}) {
     EXPECT_GT(tests(*r, "edges"), tests(*r, "silhouettes"));
     EXPECT_LT(tests(*r, "reciprocals"), tests(interval, "reciprocals"));
     EXPECT_NEAR(pj(*r, "bundle_tests"),
-                29 * (tests(*r, "bundle") - tests(*r, "silhouettes")) + 17.3 * tests(*r, "silhouettes") +
-                    8.3 * tests(*r, "edges"),
+                28.6 * (tests(*r, "bundle") - tests(*r, "silhouettes")) + 17.1 * tests(*r, "silhouettes") +
+                    7.5 * tests(*r, "edges"),
                 1);
   }
   for (const Json* r : {&interval, &serial, &parallel}) {
@@ -69,10 +69,10 @@ TEST_F(BundlePrices, AreThoseOfTheOperationsOfTheirForm) {
   EXPECT_LT(tests(serial, "edges"), tests(parallel, "edges"));
   // The cycles of two schedules differ by chance; those of the units do not.
   EXPECT_LT(busy(parallel), busy(serial));
-  // A unit for intervals is a box unit; one for silhouettes is half of it, and a third of it for each edge at once.
-  EXPECT_NEAR(units_mm2(serial) - units_mm2(interval), 2 * (0.063 + 0.042 - 0.126), 1e-5);
-  EXPECT_NEAR(units_mm2(parallel) - units_mm2(interval), 2 * (0.063 + 6 * 0.042 - 0.126), 1e-5);
-  const Json dearer = report(kMachine, {"bundles.form=silhouette", "area.edge=1.042", "energy.edge=108.3"});
+  // A unit for intervals is a box unit; one for silhouettes has half of its products, and two for each edge at once.
+  EXPECT_NEAR(units_mm2(serial) - units_mm2(interval), 2 * (0.085 + 0.0269 - 0.126), 1e-5);
+  EXPECT_NEAR(units_mm2(parallel) - units_mm2(interval), 2 * (0.085 + 6 * 0.0269 - 0.126), 1e-5);
+  const Json dearer = report(kMachine, {"bundles.form=silhouette", "area.edge=1.0269", "energy.edge=107.5"});
   EXPECT_NEAR(units_mm2(dearer) - units_mm2(serial), 2, 1e-5);
   EXPECT_NEAR(pj(dearer, "bundle_tests") - pj(serial, "bundle_tests"), 100 * tests(serial, "edges"), 1);
 }
@@ -86,11 +86,11 @@ TEST_F(BundlePrices, BlocksThatDoMoreAreLarger) {
     sets.push_back(std::string("testers.bundle_blocks=") + blocks);
     return units_mm2(report(kMachine, sets));
   };
-  const double unit = 0.063 + 6 * 0.042, box = 0.126, separate = with(parallel, "separate");
+  const double unit = 0.085 + 6 * 0.0269, box = 0.126, separate = with(parallel, "separate");
   EXPECT_NEAR(with(parallel, "pairs") - separate, 2 * unit, 1e-5);
   // Four box units a resource, each as large as the unit that is left out.
   EXPECT_NEAR(with(parallel, "shared") - separate, 2 * (4 * (unit - box) - unit), 1e-5);
-  EXPECT_NEAR(with(serial, "separate") - with(serial, "shared"), 2 * (0.063 + 0.042), 1e-5);
+  EXPECT_NEAR(with(serial, "separate") - with(serial, "shared"), 2 * (0.085 + 0.0269), 1e-5);
 }
 
 // One node holds all of its leaves: bundles are tested against no box there, and divide only for primitives.

@@ -66,6 +66,7 @@ TEST(ReportSections, EveryCounterOfTestsStandsUnderItsName) {
                                                   "transforms_in_double",
                                                   "inversions",
                                                   "full_inversions",
+                                                  "inversions_in_double",
                                                   "exact_volumes",
                                                   "extra_box_hits",
                                                   "culled",

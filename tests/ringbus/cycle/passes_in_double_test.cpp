@@ -31,7 +31,7 @@ TEST(PassesInDouble, ATransformForANearlySingularInstanceTakesFour) {
   EXPECT_EQ(end_of({.transforms = 5, .transforms_in_double = 5}), end_of({.transforms = 4 * 5}));
   const std::uint64_t inversion = accel::kInversionPasses;
   EXPECT_EQ(inversion_passes({.transforms = 5, .inversions = 1}), inversion);
-  EXPECT_EQ(inversion_passes({.transforms = 5, .inversions = 1, .transforms_in_double = 5}), 4 * inversion);
+  EXPECT_EQ(inversion_passes({.transforms = 5, .inversions = 1, .inversions_in_double = 1}), 4 * inversion);
 }
 
 // US 12394134, paragraph 25: 39 products for the inverse of the whole matrix, 30 for the two steps, 18 in a pass.

@@ -52,6 +52,7 @@ std::vector<Factor> scene_and_engine() {
       {"accuracy.triangle", all<TriangleLevel>()},
       {"accuracy.box", all<BoxLevel>()},
       {"accuracy.transform", all<TransformLevel>()},
+      {"accuracy.products", all<AccuracyConfig::Products>(), {"engine.kind=cycle"}},
       {"accuracy.transformed_ray", all<AccuracyConfig::TransformedRay>(), {"engine.kind=cycle"}},
       {"accuracy.instance_data", {"forward", "rt", "inverse"}, {"engine.kind=cycle"}},
       {"bvh.width", {"2", "3", "4", "8"}},

@@ -13,7 +13,7 @@ namespace {
 /// Testers, slowed by a fault, at the levels of accuracy.
 TestersConfig testers_in_use(const Config& config, TestersConfig testers, ResourceId id) {
   slow_down(testers, config.faults, id);
-  return at_levels(testers, config.accuracy);
+  return at_levels(testers, config.accuracy, config.bundles);
 }
 
 }  // namespace

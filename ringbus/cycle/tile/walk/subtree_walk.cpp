@@ -42,7 +42,8 @@ void SubtreeWalk::walk_ray(const accel::RayMembers& ray, IntersectionCounts& cou
     IntersectionCounts tests = walk_.test(accel_, *key, ray);
     ways_.steps.push_back({*key, ray_tests(tests)});
     // One inversion serves all rays of a visit.
-    if (tests.inversions > 0 && !inverted_.insert(key->instance).second) tests.inversions = tests.full_inversions = 0;
+    if (tests.inversions > 0 && !inverted_.insert(key->instance).second)
+      tests.inversions = tests.full_inversions = tests.inversions_in_double = 0;
     counts += tests;
   }
   ways_.ends.push_back(static_cast<std::uint32_t>(ways_.steps.size()));
