@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "app/area/area_split.h"
 #include "core/config/costs.h"
 #include "core/config/load/validate.h"
 #include "core/config/own_sections.h"
@@ -167,6 +169,17 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
                                   ? (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by
                                   : static_cast<std::int64_t>(drawn.parts.cache_nodes());
   store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
+  if (drawn.parts.caches.empty()) {  // else links bring the lines
+    const MemoryConfig& memory = c.memory;
+    const std::int64_t width = memory.l2_answer_bytes_per_cycle > 0
+                                   ? memory.l2_answer_bytes_per_cycle
+                                   : memory.l2_banks * memory.l2_lines_per_cycle * memory.line_bytes;
+    const double way_mm =
+        out.link_mm * std::sqrt(static_cast<double>(std::min(memory.shared_by, c.topology.resources))) / 2;
+    report::AreaOf& ports = parts[AreaPart::kMemoryPorts];
+    ports.size = 8 * static_cast<double>(caches * width) * way_mm;
+    ports.mm2 = ports.size * cost(c, Cost::kWirePitch) / 1000;
+  }
   double places = 0;
   for (const ringbus::Topology::Wire& wire : topology.wires()) places += static_cast<double>(wire.depth);
   store(AreaPart::kLinkQueues, places * place_bytes(c) / kKiB);
@@ -207,6 +220,18 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   return out;
 }
 
+std::optional<Config> largest_machine(const LocatedConfig& machine, const SceneFacts& scene, bool all) {
+  Config c = machine.config;
+  const auto budget = static_cast<double>(*c.area.budget_mm2);
+  for (std::int64_t n = config::kMaxResources; n > 0; --n) {
+    c.topology.resources = n;
+    if (all && !scale_shared_parts(c, machine.config)) continue;
+    if (validate_config(c, machine.positions, {.force = true}).empty() && machine_area(c, scene).mm2 <= budget)
+      return c;
+  }
+  return std::nullopt;
+}
+
 void fit_area(LocatedConfig& located, const SceneFacts& scene) {
   Config& c = located.config;
   if (!c.area.budget_mm2) return;
@@ -222,16 +247,21 @@ void fit_area(LocatedConfig& located, const SceneFacts& scene) {
       refuse(fmt::format("expected a machine of at most {} mm2, found one of {:.4g}", *c.area.budget_mm2, area));
     return;
   }
-  const Config machine = c;
-  const std::int64_t given = c.topology.resources;
-  for (std::int64_t n = config::kMaxResources; n > 0; --n) {
-    c.topology.resources = n;
-    if (c.area.fit == AreaConfig::Fit::kAll && !scale_shared_parts(c, machine)) continue;
-    if (validate_config(c, located.positions, {.force = true}).empty() && machine_area(c, scene).mm2 <= budget) return;
-  }
-  c = machine;
-  refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}",
-                     *c.area.budget_mm2, given, machine_area(c, scene).mm2));
+  using Fit = AreaConfig::Fit;
+  std::optional<Config> fitted = c.area.fit == Fit::kBest ? machine_of(located, scene, {})
+                                                          : largest_machine(located, scene, c.area.fit == Fit::kAll);
+  if (!fitted)
+    refuse(fmt::format("no number of resources makes a machine of at most {} mm2; with {} it has {:.4g}",
+                       *c.area.budget_mm2, c.topology.resources, machine_area(c, scene).mm2));
+  if (c.area.fit != Fit::kBest) c = std::move(*fitted);
+}
+
+void require_no_search(const LocatedConfig& located) {
+  const AreaConfig& area = located.config.area;
+  if (area.budget_mm2 && area.fit == AreaConfig::Fit::kBest)
+    throw ConfigError({{located.positions.find("area.fit"), "area.fit",
+                        "only carousel run and versus search for a split; expected resources, all or refuse, found "
+                        "best"}});
 }
 
 }  // namespace carousel::app

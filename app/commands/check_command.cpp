@@ -166,9 +166,9 @@ int check_command(const CheckArguments& arguments) {
   // A topology that can deadlock gets its verdict here instead of a plain refusal.
   std::optional<Prepared> p;
   try {
-    p.emplace(prepare(arguments, {.force = true, .ranks = true, .frames = true}, false, [](const Prepared& of) {
-      require_modules(of.config().engine, of.config().workload, of.config().image);
-    }));
+    p.emplace(prepare(
+        arguments, {.force = true, .ranks = true, .frames = true, .searches = true}, false,
+        [](const Prepared& of) { require_modules(of.config().engine, of.config().workload, of.config().image); }));
   } catch (...) {
     if (arguments.json)
       print_result(

@@ -5,12 +5,14 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "accel/builders/file/write_trees.h"
+#include "app/area_search/area_search.h"
 #include "app/build_report/build_report.h"
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
@@ -196,9 +198,9 @@ std::string scene_digest(const Prepared& p) {
 }
 
 void write_files(const std::filesystem::path& folder, const RunArguments& arguments, const Prepared& p,
-                 const RenderJob& job, const report::Report& report, HitRecorder* recorder, ExtraFile* rays,
-                 std::span<const ringbus::PixelCost> heat) {
-  write_file(folder / "config.resolved.yaml", resolved_yaml(p.absolute_config()));
+                 const std::string& resolved, const RenderJob& job, const report::Report& report, HitRecorder* recorder,
+                 ExtraFile* rays, std::span<const ringbus::PixelCost> heat) {
+  write_file(folder / "config.resolved.yaml", resolved);
   job.write_images(folder);
   if (!arguments.heat.empty() && report.heat)
     write_heat(folder, heat, static_cast<std::uint32_t>(p.config().image.width), arguments.heat == "log");
@@ -222,7 +224,7 @@ int run_command(const RunArguments& arguments) {
   std::optional<RunOutputs> outputs;
   std::optional<RankScope> ranks;
   Prepared p = prepare(
-      arguments, {.force = arguments.force, .ranks = true, .frames = true}, keep_hits,
+      arguments, {.force = arguments.force, .ranks = true, .frames = true, .searches = true}, keep_hits,
       [&](const Prepared& of) {
         require_modules(of.config().engine, of.config().workload, of.config().image);
         if (const Config& config = of.config(); config.engine.transport != EngineTransport::kLocal) {
@@ -250,6 +252,11 @@ int run_command(const RunArguments& arguments) {
       file->write([&](AtomicFile& to) { accel::write_trees(to, p.accel, p.scene); });
   require_heat(arguments, p);
 
+  const std::string resolved = resolved_yaml(p.absolute_config());  // of a search the configuration that it began with
+  std::optional<report::AreaSearch> search;
+  if (const AreaConfig& area = p.config().area; area.budget_mm2 && area.fit == AreaConfig::Fit::kBest)
+    search = search_area(p, LocatedConfig(p.located), interrupt, arguments.quiet);
+
   RenderJob job(p);
   if (ranks) {
     ranks->require_same("scene", scene_digest(p));
@@ -270,6 +277,7 @@ int run_command(const RunArguments& arguments) {
     ranks->leave();
     return report.incomplete ? interrupt.status() : kDone;
   }
+  if (search && report.area) report.area->search = std::move(search);
   if (arguments.audit)
     audit(
         p, job, interrupt.token(), arguments.quiet,
@@ -279,10 +287,11 @@ int run_command(const RunArguments& arguments) {
         report);
   if (ExtraFile* const file = outputs->memory())
     file->write([&](AtomicFile& to) { write_memory_csv(to, memory, !report.incomplete); });
-  const int status = finish(
-      arguments, report, report::report_table(report), *outputs, interrupt, [&](const std::filesystem::path& folder) {
-        write_files(folder, arguments, p, job, report, recorder ? &*recorder : nullptr, outputs->rays(), heat);
-      });
+  const int status = finish(arguments, report, report::report_table(report), *outputs, interrupt,
+                            [&](const std::filesystem::path& folder) {
+                              write_files(folder, arguments, p, resolved, job, report, recorder ? &*recorder : nullptr,
+                                          outputs->rays(), heat);
+                            });
   if (ranks) ranks->leave();
   return status;
 }

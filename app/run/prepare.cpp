@@ -254,8 +254,7 @@ void limit_memory(const Prepared& p) {
 
 /// Makes the storage of collections large enough for the structure where its size is left to the program.
 void adapt_storage(Prepared& p) {
-  const std::vector<std::string> given = p.located.positions.given();
-  if (std::find(given.begin(), given.end(), "collections.capacity") != given.end()) return;
+  if (std::ranges::count(p.located.positions.given(), "collections.capacity") > 0) return;
   const std::int64_t needed = ringbus::minimum_capacity(p.config(), p.accel.most_ways(), p.accel.levels());
   std::int64_t& capacity = p.located.config.collections.capacity;
   if (needed <= capacity) return;
@@ -361,17 +360,17 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
       arguments.charge_all ? load_charged(text, arguments.sets, options) : load_config(text, arguments.sets, options);
   if (!options.ranks) require_one_rank(p);
   if (!options.frames) require_one_frame(p);
+  if (!options.searches) require_no_search(p.located);
   if (!options.force) require_flow(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
-  const bool is_fitted = p.config().area.budget_mm2.has_value();
+  const bool is_fitted = p.config().area.budget_mm2 && p.config().area.fit != AreaConfig::Fit::kBest;
   const auto call = [&] {
     if (before_scene) with_positions(p.located.positions, [&] { before_scene(p); });
   };
   if (!is_fitted) call();
   prepare_located(p, keep_hits, ranks ? ranks() : nullptr);
   if (is_fitted) call();
-  const std::vector<IgnoredKey> ignored = p.ignored();
-  if (arguments.strict) refuse_ignored(ignored);
+  if (arguments.strict) refuse_ignored(p.ignored());
   return p;
 }
 
@@ -379,6 +378,7 @@ void set_machine(Prepared& p, LocatedConfig located) {
   p.located = std::move(located);
   require_one_rank(p);
   require_one_frame(p);
+  require_no_search(p.located);
   limit_memory(p);
   if (!p.has_rays()) return;
   set_query(p);

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "app/area_search/area_search.h"
 #include "app/host/exit_status.h"
 #include "app/host/interrupt.h"
 #include "app/host/output.h"
@@ -26,13 +28,18 @@ int versus_command(const VersusArguments& arguments) {
     folder = std::filesystem::path("out") / (std::filesystem::path(arguments.config).stem().string() + "-versus");
   std::optional<OutputFolder> output;
   std::string resolved;
-  Prepared p = prepare(arguments, {}, false, [&](const Prepared& of) {
+  Prepared p = prepare(arguments, {.searches = true}, false, [&](const Prepared& of) {
     static_cast<void>(conventional_twin(of.located));  // refuses before the scene is loaded
     const Config config = of.absolute_config();
     resolved = resolved_yaml(config);
     output.emplace(folder, &config, arguments.force, Results::kVersus);
   });
-  const report::Versus versus = run_versus(p, {arguments.seeds, !arguments.no_search, arguments.quiet}, interrupt);
+  const AreaConfig& area = p.config().area;
+  const bool best = area.budget_mm2 && area.fit == AreaConfig::Fit::kBest;
+  std::optional<report::AreaSearch> search;
+  if (best) search = search_area(p, LocatedConfig(p.located), interrupt, arguments.quiet);
+  report::Versus versus = run_versus(p, {arguments.seeds, !arguments.no_search, arguments.quiet, best}, interrupt);
+  versus.search = std::move(search);
   const nlohmann::ordered_json result = report::versus_json(versus);
   const std::string json = report::json_text(report::sealed(result)) + "\n";
   const std::exception_ptr failure = output->write([&](const std::filesystem::path& staging) {

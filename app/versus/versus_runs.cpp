@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "app/area/machine_area.h"
+#include "app/area_search/area_search.h"
 #include "app/build_report/build_report.h"
 #include "app/run/bottleneck.h"
 #include "app/run/render_job.h"
@@ -142,12 +143,16 @@ class VersusRuns {
   /// The twin that is as large as this machine; none if not even one resource is.
   void add_at_equal_area(report::Versus& out, Config twin, double mm2) {
     twin.area.budget_mm2 = static_cast<float>(mm2);
-    twin.area.fit = AreaConfig::Fit::kAll;
+    twin.area.fit = settings_.best ? AreaConfig::Fit::kBest : AreaConfig::Fit::kAll;
     LocatedConfig fitted = located(twin);
     try {
       fit_area(fitted, ringbus::scene_facts(p_.accel));
     } catch (const ConfigError&) {
       return;
+    }
+    if (settings_.best) {
+      out.twin_search = search_area(p_, fitted, interrupt_, settings_.quiet);
+      fitted.config = p_.config();
     }
     fitted.config.area = twin.area;
     fitted.config.area.budget_mm2.reset();

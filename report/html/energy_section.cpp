@@ -127,6 +127,10 @@ Html energy_section(const Json& report, const Json& schema) {
   out += over_time(report);
   out += parts_of(report, schema, "energy", "joules", "Energy by part");
   out += parts_of(report, schema, "area", "mm2", "Area by part");
+  if (const Json* trials = find(report, "area.search.trials"))
+    out += table_of("area-search", "Splits of the area's budget that were simulated", *trials,
+                    schema_at(schema, "properties.area.properties.search.properties.trials.items"))
+               .html();
   if (const Json* costs = find(report, "costs"))
     out += table_of("costs-table", "Every number of energy and area, with its source", *costs,
                     schema_at(schema, "properties.costs.items"))

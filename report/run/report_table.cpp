@@ -260,6 +260,12 @@ void energy_lines(Table& table, const Report& report) {
   });
   table.line("area", "{:.4g} mm2   {:.4g} Mrays/s on each", a.mm2, a.mrays_per_second_per_mm2.value_or(0));
   items.lines(table, "");
+  if (const AreaTrial* best = a.search ? a.search->chosen() : nullptr)
+    table.line("",
+               "best of {} splits: {} resources, {} testers each, L2 {} KiB with {} ports, {} workers   {:.3g} times "
+               "the first",
+               a.search->trials.size(), best->resources, best->testers, best->l2_kib, best->l2_lines_per_cycle,
+               best->shader_workers, ratio(a.search->trials.front().cycles, best->cycles));
 }
 
 std::string image_text(const nlohmann::ordered_json& config) {

@@ -203,6 +203,9 @@ void energy_words(Words& w) {
     w.item(std::string(P::kName) + " N", std::string("area.parts.") + P::kSection,
            std::string("part of the area: ") + P::kAreaMeaning);
   });
+  w.item("best of N splits: N resources, N testers each, L2 N KiB with N ports, N workers", "area.search.trials",
+         "the split of area.budget_mm2 with the fewest foretold cycles")
+      .item("N times the first", "area.search.trials[].cycles", "speed over that of the split tried first");
 }
 
 void test_words(Words& w) {

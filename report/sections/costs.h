@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "core/config/parts.h"
 #include "core/types/unit_kind.h"
@@ -172,7 +174,8 @@ enum class AreaPart : std::uint8_t {
   kLinkQueues,
   kWires,
   kShaders,
-  kBuilder
+  kBuilder,
+  kMemoryPorts
 };
 
 struct AreaPartRow {
@@ -195,6 +198,9 @@ inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
     {"shaders", "shaders", "shader workers (products/cycle)"},
     {"builder", "builder",
      "the unit that brings the structure to each frame: its box pipeline, its store and its lines on their way (KiB)"},
+    {"memory_ports", "memory ports",
+     "ports of shared caches: wires for the lines that they answer in a cycle, over half of the side of the square of "
+     "the resources that share one (mm)"},
 });
 
 struct AreaOf {
@@ -221,14 +227,57 @@ struct AreaParts {
 
 template <class V>
 void describe(V& v, const AreaParts& r) {
-  for (std::size_t i = 0; i < kAreaParts.size(); ++i) v.section(kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
+  constexpr auto kPorts = static_cast<std::size_t>(AreaPart::kMemoryPorts);  // older reports have none
+  for (std::size_t i = 0; i < kAreaParts.size(); ++i)
+    v.section_if(i != kPorts || r.of[i].mm2 > 0, kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
   Parts::for_each([&]<class P>(std::size_t i) { v.section(P::kSection, r.declared[i], P::kAreaMeaning); });
+}
+
+/// A split of the budget that was simulated.
+struct AreaTrial {
+  std::uint64_t resources = 0, testers = 0, l2_kib = 0, l2_lines_per_cycle = 0, shader_workers = 0;
+  double mm2 = 0, cycles = 0;
+  bool chosen = false;
+};
+
+template <class V>
+void describe(V& v, const AreaTrial& r) {
+  v.field("resources", r.resources, "resources", "resources: as many as the rest of the budget holds");
+  v.field("testers", r.testers, "units", "test units of a resource that the scene puts to use");
+  v.field("l2_kib", r.l2_kib, "KiB", "size of a shared cache");
+  v.field("l2_lines_per_cycle", r.l2_lines_per_cycle, "lines/cycle", "ports of a bank of a shared cache");
+  v.field("shader_workers", r.shader_workers, "workers", "shader workers");
+  v.field("mm2", r.mm2, "mm2", "area of the machine");
+  v.field("cycles", r.cycles, "cycles", "foretold cycles of the frame: of a whole frame exact, else estimated");
+  v.field("chosen", r.chosen, "", "true for the split that the machine has: the one with the fewest foretold cycles");
+}
+
+/// The search for the best split of a budget, with area.fit: best.
+struct AreaSearch {
+  double budget_mm2 = 0, fraction = 1;
+  std::string ended;
+  std::vector<AreaTrial> trials{};
+
+  const AreaTrial* chosen() const {
+    for (const AreaTrial& trial : trials)
+      if (trial.chosen) return &trial;
+    return nullptr;
+  }
+};
+
+template <class V>
+void describe(V& v, const AreaSearch& r) {
+  v.field("budget_mm2", r.budget_mm2, "mm2", "area that was split");
+  v.field("fraction", r.fraction, "fraction", "part of the frame that each trial simulated");
+  v.field("ended", r.ended, "", "reason for the end of the search");
+  v.section("trials", r.trials, "every split that was simulated, in order");
 }
 
 struct Area {
   double mm2 = 0, link_mm = 0;
   std::optional<double> mrays_per_second_per_mm2{};
   AreaParts parts{};
+  std::optional<AreaSearch> search{};
 };
 
 template <class V>
@@ -238,6 +287,7 @@ void describe(V& v, const Area& r) {
   v.field("mrays_per_second_per_mm2", r.mrays_per_second_per_mm2, "Mrays/s/mm2",
           "throughput at engine.clock_mhz over the area");
   v.section("parts", r.parts, "each part's area; they add up to the whole");
+  v.section("search", r.search, "the search for the best split of area.budget_mm2, with area.fit: best");
 }
 
 /// A number of the table of costs, as the run had it.

@@ -6,6 +6,7 @@
 
 #include "report/schema/checksum.h"
 #include "report/schema/document_version.h"
+#include "report/sections/costs.h"
 #include "report/sections/visitor.h"
 
 namespace carousel::report {
@@ -123,6 +124,7 @@ struct Versus {
   std::vector<VersusTurn> turns{};
   std::vector<std::string> lines{}, twin_sets{};
   std::vector<VersusRun> runs{};
+  std::optional<AreaSearch> search{}, twin_search{};
   std::optional<std::string> checksum{};  ///< set where the text is written (report/read/document.h)
 };
 
@@ -138,6 +140,8 @@ void describe(V& v, const Versus& r) {
   v.section("turns", r.turns, "the slower machine with each class of its parts relaxed, the greatest gain first");
   v.field("twin_sets", r.twin_sets, "", "keys in which the twin differs from this machine, with its values");
   v.section("runs", r.runs, "every simulated frame");
+  v.section("search", r.search, "the search for this machine's best split of area.budget_mm2, with area.fit: best");
+  v.section("twin_search", r.twin_search, "likewise, that of the twin at equal area");
   v.field("checksum", r.checksum, "", kChecksumMeaning);
 }
 

@@ -26,7 +26,7 @@ struct EnergyConfig {
 
 struct AreaConfig {
   std::optional<float> budget_mm2;
-  enum class Fit { kResources, kAll, kRefuse } fit = Fit::kResources;
+  enum class Fit { kResources, kAll, kBest, kRefuse } fit = Fit::kResources;
   std::optional<float> link_mm;  ///< absent: the side of a square of a resource's area
   OwnCosts own;                  ///< values for the rows of this section, where given
 };
@@ -34,7 +34,7 @@ struct AreaConfig {
 template <>
 inline constexpr auto kEnumNames<AreaConfig::Fit> = [] {
   using enum AreaConfig::Fit;
-  return names<AreaConfig::Fit>({{kResources, "resources"}, {kAll, "all"}, {kRefuse, "refuse"}});
+  return names<AreaConfig::Fit>({{kResources, "resources"}, {kAll, "all"}, {kBest, "best"}, {kRefuse, "refuse"}});
 }();
 
 namespace config {
@@ -60,10 +60,13 @@ void describe(V& v, AreaConfig& c) {
   v.field_or_auto("budget_mm2", c.budget_mm2, RealRange{0, 1e6, true}, "mm2",
                   "The largest area of the machine. With auto there is no bound.");
   v.choice(
-      "fit", c.fit,
-      "With a budget the machine gets the largest number of resources that stays within it, whatever "
-      "topology.resources says. With all, shading.workers grows by the same factor, and so do size and banks of an "
-      "L2 that all resources share. With refuse a larger machine is an error.");
+       "fit", c.fit,
+       "With a budget the machine gets the largest number of resources that stays within it, whatever "
+       "topology.resources says. With all, shading.workers grows by the same factor, and so do size and banks of an "
+       "L2 that all resources share. With best at most 40 splits between resources, their testers, shared caches, "
+       "ports and shader workers are simulated, from the machine of all on, and the fastest is taken. With refuse a "
+       "larger machine is an error.")
+      .only(EngineKind::kCycle, "search for the best split", AreaConfig::Fit::kBest);
   v.field_or_auto(
       "link_mm", c.link_mm, RealRange{0, 1000}, "mm",
       "The length of a link between neighbours. With auto it is the side of a square of a resource's area.");

@@ -55,6 +55,7 @@ class Rules {
     config::check_warps(c, breach);
     config::check_programs(c, positions_, issues_);
     sampling_fits();
+    search_has_a_frame();
     vary_names_keys();
     return std::move(issues_);
   }
@@ -62,6 +63,16 @@ class Rules {
  private:
   void issue(const std::string& key, std::string message) {
     issues_.push_back({positions_.find(key), key, std::move(message)});
+  }
+
+  void search_has_a_frame() {
+    using Kind = WorkloadConfig::Kind;
+    if (!c.area.budget_mm2 || c.area.fit != AreaConfig::Fit::kBest) return;
+    const char* const instead = "expected resources, all or refuse, found best";
+    if (c.workload.kind == Kind::kTraffic || c.workload.kind == Kind::kMemoryTrace)
+      issue("area.fit", fmt::format("splits are compared by rays, and this workload has none; {}", instead));
+    if (c.engine.transport != EngineTransport::kLocal)
+      issue("area.fit", fmt::format("ranks do not share a search; {}", instead));
   }
 
   void one_scene() {

@@ -12,6 +12,7 @@ struct ValidateOptions {
   bool force = false;        ///< permits `flow: none`, which can deadlock
   bool ranks = false;        ///< the caller can play `engine.transport: mpi`; asked when a run is prepared
   bool frames = false;       ///< the caller shows series of frames; asked likewise
+  bool searches = false;     ///< the caller searches for the split of `area.fit: best`; asked likewise
   bool fields_only = false;  ///< `load_config` leaves the rules out, for tests of reader and writer
 };
 

@@ -141,6 +141,14 @@ std::string versus_page(const Json& versus) {
                       return fmt::format("{}, seed {}", words(text_at(row, "machine")), number_at(row, "seed"));
                     },
                     {"rays_per_kilocycle"});
+  Html splits;
+  for (const char* const search : {"search", "twin_search"})
+    if (const Json* trials = find(versus, std::string(search) + ".trials"))
+      splits += table_of_rows(search, search == std::string("search") ? "Of this machine" : "Of the twin at equal area",
+                              *trials,
+                              [](const Json& row) { return fmt::format("{} resources", row["resources"].get<int>()); },
+                              {"cycles", "mm2"})
+                    .html();
   Html glance;
   for (std::size_t i = 0; i < versus["lines"].size(); ++i)
     glance += markup("<p class=\"{}\">{}</p>\n", i == 0 ? "verdict" : "detail", versus["lines"][i].get<std::string>());
@@ -152,6 +160,7 @@ std::string versus_page(const Json& versus) {
                   {"machines", "The machines", bars_of(machines, "Rays per kilocycle")},
                   {"against", "Against each twin", against.html()},
                   {"turns", "What would turn it round", bars_of(turns, "Speed over that of the faster machine")},
+                  {"splits", "Splits of the area that were simulated", splits},
                   {"runs", "Runs", runs.html()},
                   {"twin", "The twin", twin}},
                  Json::object(), {});

@@ -133,6 +133,8 @@ TEST_F(EnergyRun, AreaIsOfTheConfiguredParts) {
   EXPECT_NEAR(parts["shape_buffers"]["mm2"].get<double>(), 8 * 8 * 0.00456, 1e-4);
   EXPECT_NEAR(parts["l2"]["mm2"].get<double>(), 1024 * 0.00456, 1e-3);
   EXPECT_NEAR(parts["shaders"]["mm2"].get<double>(), 16 * 8 * 0.021, 1e-4);
+  // Four lines a cycle of an L2 that serves a square of eight resources.
+  EXPECT_NEAR(parts["memory_ports"]["mm2"].get<double>(), 8 * 256 * std::sqrt(8) * 0.28e-3, 1e-4);
   const double wires = parts["wires"]["mm2"];
   EXPECT_NEAR(wires, 8 * 256 * 2 * 0.28e-3, 1e-4);
   double sum = 0;
@@ -256,8 +258,8 @@ TEST(CostsPage, HasEveryNumberWithItsSource) {
 }
 
 TEST_F(EnergyRun, ABudgetGivesTheLargestMachineWithinIt) {
-  const double budget = 25;
-  const Json r = run("ring", {"area.budget_mm2=25"});
+  const double budget = 30;
+  const Json r = run("ring", {"area.budget_mm2=30"});
   const auto resources = r["config"]["topology"]["resources"].get<int>();
   EXPECT_LE(r["area"]["mm2"].get<double>(), budget);
   const Json larger = run("ring", {fmt::format("topology.resources={}", resources + 1)});

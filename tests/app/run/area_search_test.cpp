@@ -1,0 +1,175 @@
+// The search for the best split of an area, as a user starts it: its trials, its machine, and what is refused.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/support/program.h"
+
+namespace carousel::area_search_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using testing::HasSubstr;
+
+constexpr const char* kMachine =
+    "scene: {builtin: terrain, triangles: 2000}\n"
+    "image: {width: 24, height: 16, samples: 1, max_depth: 2}\n"
+    "engine: {kind: cycle, what_if: false}\n"
+    "topology: {resources: 2, shape: ring}\n"
+    "rays: {slots_per_resource: 64}\n"
+    "collections: {when_full: spill}\n"
+    "memory: {shape_buffer_kib: 8, l2_kib: 128, shared_by: 2}\n"
+    "energy: {profile: n45}\n"
+    "area: {budget_mm2: 12, fit: best}\n";
+
+class AreaSearchRun : public testing::Test {
+ protected:
+  Outcome start(std::vector<std::string> words, const std::vector<std::string>& sets = {},
+                const std::string& machine = kMachine) {
+    program_.write("machine.yaml", machine);
+    words.insert(words.begin() + 1, "machine.yaml");
+    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    return program_.run(words);
+  }
+  Json run(const std::vector<std::string>& sets = {}) {
+    const Outcome outcome = start({"run", "--out", "out", "--force"}, sets);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    said_ = outcome.out;
+    return outcome.status == 0 ? Json::parse(program_.read("out/report.json")) : Json();
+  }
+  std::string refused(const std::vector<std::string>& sets,
+                      const std::vector<std::string>& words = {"run", "--quiet"}) {
+    const Outcome outcome = start(words, sets);
+    EXPECT_EQ(outcome.status, 2) << outcome.out;
+    EXPECT_FALSE(std::filesystem::exists(program_.folder() / "out/machine"));
+    return outcome.err;
+  }
+
+  Program program_;
+  std::string said_;
+};
+
+/// What a trial has of each part for a resource, as powers of two of the given machine's.
+std::array<int, 4> steps_of(const Json& trial, const Json& first) {
+  const auto step = [&](const char* key, double per) {
+    return static_cast<int>(std::lround(std::log2(trial[key].get<double>() / first[key].get<double>() / per)));
+  };
+  const double more = trial["resources"].get<double>() / first["resources"].get<double>();
+  return {step("testers", 1), step("l2_kib", more), step("l2_lines_per_cycle", 1), step("shader_workers", more)};
+}
+
+TEST_F(AreaSearchRun, TakesTheFastestSplitWithinTheBudget) {
+  const Json r = run();
+  const Json& search = r["area"]["search"];
+  EXPECT_EQ(search["budget_mm2"], 12);
+  EXPECT_EQ(search["fraction"], 1);
+  const Json& trials = search["trials"];
+  ASSERT_GT(trials.size(), 5u);
+  ASSERT_LE(trials.size(), 40u);
+  const Json* chosen = nullptr;
+  double least = trials[0]["cycles"];
+  for (const Json& trial : trials) {
+    EXPECT_LE(trial["mm2"].get<double>(), 12);
+    least = std::min(least, trial["cycles"].get<double>());
+    if (trial["chosen"] == true) {
+      EXPECT_EQ(chosen, nullptr);
+      chosen = &trial;
+    }
+  }
+  ASSERT_NE(chosen, nullptr);
+  EXPECT_EQ((*chosen)["cycles"], least);
+  // Each part of the chosen split was tried with twice and half of it, unless such a machine is not there.
+  std::vector<std::array<int, 4>> tried;
+  for (const Json& trial : trials) tried.push_back(steps_of(trial, trials[0]));
+  const std::array<int, 4> best = steps_of(*chosen, trials[0]);
+  int neighbours = 0;
+  for (const std::array<int, 4>& other : tried) {
+    int distance = 0;
+    for (std::size_t i = 0; i < 4; ++i) distance += std::abs(other[i] - best[i]);
+    neighbours += distance == 1;
+  }
+  EXPECT_GE(neighbours, 4);
+  EXPECT_EQ(search["ended"], "no neighbour of the chosen split is faster");
+  // The run is that of the chosen machine, and a run of this machine alone is the same.
+  EXPECT_EQ(r["engine"]["cycles"], least);
+  EXPECT_EQ(r["config"]["topology"]["resources"], (*chosen)["resources"]);
+  EXPECT_EQ(r["config"]["memory"]["l2_kib"], (*chosen)["l2_kib"]);
+  EXPECT_EQ(r["config"]["shading"]["workers"], (*chosen)["shader_workers"]);
+  EXPECT_EQ(r["area"]["mm2"], (*chosen)["mm2"]);
+  EXPECT_THAT(said_, HasSubstr("best of " + std::to_string(trials.size()) + " splits"));
+  EXPECT_THAT(program_.read("out/report.html"), HasSubstr("Splits of the area"));
+  program_.write("chosen.json", r["config"].dump());
+  const Outcome again = program_.run({"run", "chosen.json", "--out", "again", "--quiet"});
+  ASSERT_EQ(again.status, 0) << again.err;
+  const Json alone = Json::parse(program_.read("again/report.json"));
+  EXPECT_EQ(alone["engine"]["cycles"], r["engine"]["cycles"]);
+  EXPECT_EQ(alone["energy"]["joules"], r["energy"]["joules"]);
+  EXPECT_EQ(alone["digest"], r["digest"]);
+  EXPECT_FALSE(alone["area"].contains("search"));
+  // Nothing is lost by it, and the machine of area.fit: all is no faster.
+  const Json all = run({"area.fit=all"});
+  EXPECT_EQ(all["digest"], r["digest"]);
+  EXPECT_EQ(all["engine"]["cycles"], trials[0]["cycles"]);
+  EXPECT_GE(all["engine"]["cycles"].get<double>(), least);
+}
+
+TEST_F(AreaSearchRun, IsTheSameAgain) {
+  const std::vector<std::string> small{"image.width=12", "image.height=8"};
+  const Json first = run(small);
+  ASSERT_EQ(start({"run", "--out", "out", "--quiet"}, small).status, 0) << "in its own folder";
+  EXPECT_EQ(Json::parse(program_.read("out/report.json"))["area"]["search"], first["area"]["search"]);
+  EXPECT_EQ(run({small[0], small[1], "engine.threads=2"})["area"]["search"], first["area"]["search"]);
+  const Outcome resolved = program_.run({"run", "out/config.resolved.yaml", "--out", "again", "--quiet"});
+  ASSERT_EQ(resolved.status, 0) << resolved.err;
+  EXPECT_EQ(Json::parse(program_.read("again/report.json"))["area"]["search"], first["area"]["search"]);
+}
+
+TEST_F(AreaSearchRun, LargeFramesAreSampled) {
+  const Json r = run({"image.width=512", "image.height=400", "image.max_depth=1"});
+  EXPECT_NEAR(r["area"]["search"]["fraction"].get<double>(), 200000.0 / (512 * 400), 1e-9);
+  EXPECT_FALSE(r.contains("sampled")) << "the run itself is whole";
+  for (const Json& trial : r["area"]["search"]["trials"])
+    if (trial["chosen"] == true) {
+      EXPECT_NEAR(trial["cycles"].get<double>() / r["engine"]["cycles"].get<double>(), 1, 0.1);
+    }
+}
+
+TEST_F(AreaSearchRun, WhatHasNoMeaningIsRefusedFirst) {
+  EXPECT_THAT(refused({"area.budget_mm2=2"}), HasSubstr("no number of resources makes a machine of at most 2 mm2"));
+  EXPECT_THAT(refused({"energy.profile=none"}), HasSubstr("an area needs a process"));
+  EXPECT_THAT(refused({"engine.kind=native", "energy.profile=none"}), HasSubstr("area.fit"));
+  EXPECT_THAT(refused({"workload={traffic: {packets: 100}}"}), HasSubstr("splits are compared by rays"));
+  EXPECT_THAT(refused({}, {"accuracy"}), HasSubstr("only carousel run and versus search for a split"));
+  const Outcome other = start({"run", "--out", "out", "--quiet"}, {"area.fit=all"});
+  ASSERT_EQ(other.status, 0) << other.err;
+  const std::string report = program_.read("out/report.json");
+  // A scene that is not there comes after the folder: neither is loaded for nothing.
+  EXPECT_THAT(refused({}, {"run", "--out", "out"}), HasSubstr("--out"));
+  EXPECT_EQ(program_.read("out/report.json"), report);
+}
+
+TEST_F(AreaSearchRun, BothMachinesOfVersusGetTheirBest) {
+  const Outcome outcome = start({"versus", "--seeds", "1", "--no-search", "--out", "v", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json versus = Json::parse(program_.read("v/versus.json"));
+  for (const auto& [search, index] : {std::pair{"search", 0}, std::pair{"twin_search", 2}}) {
+    const Json& trials = versus[search]["trials"];
+    const auto chosen =
+        std::find_if(trials.begin(), trials.end(), [](const Json& trial) { return trial["chosen"] == true; });
+    ASSERT_NE(chosen, trials.end());
+    EXPECT_EQ((*chosen)["resources"], versus["machines"][index]["resources"]) << search;
+    EXPECT_EQ((*chosen)["cycles"], versus["runs"][index]["cycles"]) << search;
+  }
+  EXPECT_LE(versus["machines"][2]["mm2"].get<double>(), versus["machines"][0]["mm2"].get<double>());
+  EXPECT_THAT(program_.read("v/versus.html"), HasSubstr("Of the twin at equal area"));
+}
+
+}  // namespace
+}  // namespace carousel::area_search_test
