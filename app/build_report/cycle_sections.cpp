@@ -167,8 +167,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
   for (const ringbus::cycle::TileResult& tile : c.tiles) sent += tile.sent;
   if (r.packets) r.packets->sent = sent;
   if (r.packets && trips.count() > 0) r.packets->latency = report::latency_of(trips);
-  if (r.collections && properties_of(config.topology.shape).has_packets &&
-      config.collections.when_full == WhenFull::kSpill) {
+  if (r.collections && properties_of(config.topology).has_packets && config.collections.when_full == WhenFull::kSpill) {
     SpillBytes& spill = r.collections->spill.emplace();
     for (const ringbus::cycle::TileResult& tile : c.tiles) spill += tile.spilled;
   }

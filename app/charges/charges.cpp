@@ -31,12 +31,12 @@ constexpr std::array kCharges{
     Charge{"ray_records", "rays have no master copies in memory", "memory.ray_records", "resource", "master"},
     Charge{"products", "products of surfaces' effects take no time", "shading.products_per_cycle", "0", "8"},
     Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
-    Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "", "topology.shape",
-           "independent"},
+    Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "",
+           "topology.shape=independent topology.trace=stacks"},
     Charge{"waiting_hits", "nodes and hits that wait for a later round are moved in no time, and always find room", "",
-           "", "", "rays.query.rounds", "resume"},
-    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "", "bvh.storage",
-           "quantised,quantised_12"},
+           "", "", "rays.query.rounds=resume"},
+    Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "",
+           "bvh.storage=quantised bvh.storage=quantised_12"},
 };
 
 /// The value of a key as `--set` takes it; empty if the configuration has none.
@@ -52,12 +52,14 @@ std::string value_of(const nlohmann::ordered_json& config, std::string_view key)
   return at->is_string() ? at->get<std::string>() : at->dump();
 }
 
-/// `values`: with commas between them.
-bool is_one_of(std::string_view value, std::string_view values) {
-  while (!values.empty()) {
-    const std::size_t comma = std::min(values.find(','), values.size());
-    if (values.substr(0, comma) == value) return true;
-    values.remove_prefix(std::min(comma + 1, values.size()));
+/// `settings`: with spaces between them.
+bool has_one_of(const LocatedConfig& located, const nlohmann::ordered_json& json, const SceneFacts& scene,
+                std::string_view settings) {
+  while (!settings.empty()) {
+    const std::size_t end = std::min(settings.find(' '), settings.size());
+    const std::string_view setting = settings.substr(0, end), key = setting.substr(0, setting.find('='));
+    if (value_of(json, key) == setting.substr(key.size() + 1) && in_use(located.config, scene, key)) return true;
+    settings.remove_prefix(std::min(end + 1, settings.size()));
   }
   return false;
 }
@@ -65,9 +67,7 @@ bool is_one_of(std::string_view value, std::string_view values) {
 bool makes_use(const Charge& charge, const LocatedConfig& located, const nlohmann::ordered_json& json,
                const SceneFacts& scene) {
   const std::string_view key = charge.key;
-  if (key.empty())
-    return is_one_of(value_of(json, charge.where_key), charge.where_values) &&
-           in_use(located.config, scene, charge.where_key);
+  if (key.empty()) return has_one_of(located, json, scene, charge.where);
   return value_of(json, key) == charge.free && in_use(located.config, scene, key);
 }
 

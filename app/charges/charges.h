@@ -16,9 +16,8 @@ struct Charge {
   const char* key;      ///< that charges it; empty: none does
   const char* free;     ///< its value that charges nothing
   const char* charged;  ///< a usual one that does
-  /// Without a key: the machines that have it are those where this key has one of these values, a comma between them.
-  const char* where_key = "";
-  const char* where_values = "";
+  /// Without a key: the machines that have it are those with one of these settings, such as "a.b=c d=e".
+  const char* where = "";
 };
 
 /// The one list of them.

@@ -59,12 +59,8 @@ void add_list(std::string& out, const char* key, const Json& items, const Json& 
 }
 
 /// The section `topology` of a network as a graph, whatever its shape: YAML that can stand in its place in a file.
-/// Throws a ConfigError for a shape that a graph cannot say.
-std::string graph_yaml(const TopologyConfig& config, const KeyPositions& positions) {
+std::string graph_yaml(const TopologyConfig& config) {
   const ringbus::DrawnShape drawn = ringbus::draw_shape(config);
-  if (!drawn.possible)
-    throw ConfigError({{positions.find("topology.shape"), "topology.shape",
-                        fmt::format("a graph cannot say {} yet: {}", enum_name(config.shape), drawn.difference)}});
   Config whole, plain;
   whole.topology = drawn.config;
   plain.topology.nodes.emplace_back();
@@ -72,8 +68,9 @@ std::string graph_yaml(const TopologyConfig& config, const KeyPositions& positio
   const Json topology = config_json(whole)["topology"], defaults = config_json(plain)["topology"];
   std::string out;
   if (!drawn.same) out += fmt::format("# Not the same machine: {}.\n", drawn.difference);
-  out += fmt::format("topology:\n  shape: graph\n  visit: {}\n", yaml_line(topology["visit"]));
-  for (const char* key : {"form", "flow", "overrides", "routes", "root", "ways", "tour", "channels"})
+  out += "topology:\n  shape: graph\n";
+  if (properties_of(drawn.config).has_packets) out += fmt::format("  visit: {}\n", yaml_line(topology["visit"]));
+  for (const char* key : {"trace", "form", "flow", "overrides", "routes", "root", "ways", "tour", "channels"})
     if (topology.contains(key) && (!defaults.contains(key) || topology[key] != defaults[key]))
       out += fmt::format("  {}: {}\n", key, yaml_line(topology[key]));
   if (const Json link = short_form(topology["link"], defaults["link"]); !link.empty())
@@ -107,7 +104,7 @@ std::string graph_facts_text(const TopologyConfig& config) {
 
 int print_graph(const CheckArguments& arguments) {
   const LocatedConfig located = load_config(read_config_file(arguments.config), arguments.sets, {.force = true});
-  print_result(graph_yaml(located.config.topology, located.positions));
+  print_result(graph_yaml(located.config.topology));
   return kDone;
 }
 

@@ -26,7 +26,7 @@ constexpr bool meets_rays(const C& c) {
   return c.workload.kind != WorkloadKind::kTraffic && c.workload.kind != WorkloadKind::kMemoryTrace;
 }
 constexpr bool exchanges_packets(const C& c) {
-  return properties_of(c.topology.shape).has_packets;
+  return properties_of(c.topology).has_packets;
 }
 constexpr bool rays_travel(const C& c) {
   return c.rays.placement == Placement::kFirstTaker || c.rays.placement == Placement::kAddressed;
@@ -115,7 +115,8 @@ inline constexpr Condition kSeveralParts{
     "the stops of a ring are clocked together, on one thread"};
 inline constexpr Condition kNetworkClock{[](const C& c, const S&) {
                                            return c.engine.kind == EngineKind::kCycle &&
-                                                  c.topology.shape == TopologyShape::kGraph;
+                                                  c.topology.shape == TopologyShape::kGraph &&
+                                                  (exchanges_packets(c) || !c.topology.links.empty());
                                          },
                                          "the network has the clock of the resources"};
 inline constexpr Condition kTwoClocks{[](const C& c, const S&) {
@@ -164,7 +165,7 @@ inline constexpr Condition kClusters{
     "frames.update chooses no clusters"};
 
 inline constexpr Condition kPackets{[](const C& c, const S&) { return exchanges_packets(c); },
-                                    "independent resources exchange no packets"};
+                                    "resources that trace their own rays exchange no packets"};
 inline constexpr Condition kTravel{[](const C& c, const S&) { return packets_travel(c); }, "no packet crosses a link"};
 inline constexpr Condition kWindow{
     [](const C& c, const S&) { return any_testers(c, [](const TestersConfig& one) { return one.window > 1; }); },
@@ -181,12 +182,7 @@ inline constexpr Condition kGroups{
     "the topology is not hierarchical"};
 inline constexpr Condition kGraph{[](const C& c, const S&) { return c.topology.shape == TopologyShape::kGraph; },
                                   "the topology is not drawn"};
-inline constexpr Condition kNoDrawnCaches{[](const C& c, const S&) {
-                                            return c.topology.shape != TopologyShape::kGraph ||
-                                                   std::ranges::none_of(c.topology.nodes, [](const GraphNode& node) {
-                                                     return node.kind == GraphNodeKind::kCache;
-                                                   });
-                                          },
+inline constexpr Condition kNoDrawnCaches{[](const C& c, const S&) { return !has_drawn_caches(c.topology); },
                                           "caches that are drawn say whom they serve"};
 inline constexpr Condition kUpDown{[](const C& c, const S&) {
                                      return c.topology.shape == TopologyShape::kGraph &&

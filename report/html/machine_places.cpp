@@ -178,7 +178,7 @@ MachinePlaces machine_places(const Json& report) {
                            });
   if (shape == "graph" && !like_a_ring)
     out.at = spread_places(all, out.links);
-  else if (shape == "independent")
+  else if (shape == "independent" || (shape == "graph" && out.links.empty()))
     out.at = row_places(n);
   else if (shape == "bus" && hubs == 1)
     out.at = bus_places(n);

@@ -79,12 +79,13 @@ void draw_bridges(std::int64_t resources, std::int64_t groups, TopologyConfig& o
 }  // namespace
 
 DrawnShape draw_shape(const TopologyConfig& config) {
-  DrawnShape out{config, true, true, ""};
+  DrawnShape out{config, true, ""};
   if (config.shape == TopologyShape::kGraph) return out;
   const bool links = config.resources > 1;
   out.config.shape = TopologyShape::kGraph;
   out.config.nodes = {drawn_group("r", config.resources)};
   out.config.links.clear();
+  out.config.trace = Tracing::kPackets;
   // Other shapes do not follow these keys of graphs.
   out.config.routes = Routing::kShortest;
   out.config.tour = Tour::kNames;
@@ -120,8 +121,7 @@ DrawnShape draw_shape(const TopologyConfig& config) {
       out.config.nodes = {drawn_node("unit", GraphNodeKind::kPacketProcess)};
       break;
     case TopologyShape::kIndependent:
-      out.possible = out.same = false;
-      out.difference = "it has no links";
+      out.config.trace = Tracing::kStacks;
       break;
     case TopologyShape::kGraph:
       break;

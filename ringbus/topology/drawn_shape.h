@@ -9,9 +9,8 @@ namespace carousel::ringbus {
 /// A shape as the graph that it is.
 struct DrawnShape {
   TopologyConfig config;   ///< of shape: graph
-  bool possible = true;    ///< a graph can say it
   bool same = true;        ///< run as this graph, a machine takes the same cycles
-  std::string difference;  ///< what a graph cannot say, or what is different
+  std::string difference;  ///< what is different
 };
 
 /// Draws a shape. The graph names its resources r[0] and on, a hierarchical network's bridges bridge[0] and on, a bus

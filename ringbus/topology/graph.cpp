@@ -215,6 +215,7 @@ void plan_the_bus(const TopologyConfig& config, TopologyPlan& plan) {
 }  // namespace
 
 TopologyPlan plan_graph(const TopologyConfig& config) {
+  if (!properties_of(config).has_packets) return plan_independent(config);
   const Graph graph = draw_checked(config);
   const std::vector<Routes> routes = routes_of(graph);
   const std::vector<config::StopRing> rings = config::stop_rings(config, graph);

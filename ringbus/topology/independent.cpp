@@ -3,11 +3,11 @@
 
 namespace carousel::ringbus {
 
-/// Every resource traces its own rays: there are no links and no packets.
+/// Every resource traces its own rays: there are no packets, and no links for them.
 TopologyPlan plan_independent(const TopologyConfig& config) {
   TopologyPlan plan;
   plan.successors = {round_in_steps(config, 1)};
-  plan.verdict = {false, "independent: every resource traces its own rays, there are no links"};
+  plan.verdict = {false, "independent: every resource traces its own rays, there are no packets"};
   return plan;
 }
 

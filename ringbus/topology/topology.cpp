@@ -9,7 +9,7 @@ namespace carousel::ringbus {
 
 Topology::Topology(const TopologyConfig& config)
     : plan_(plan_topology(config)),
-      properties_(properties_of(config.shape)),
+      properties_(properties_of(config)),
       resources_(static_cast<std::uint32_t>(config.resources)),
       visit_all_(config.visit == Visit::kAll),
       skips_ahead_(plan_.routed ? !visit_all_ : plan_.direct && (!visit_all_ || broadcasts())),

@@ -48,6 +48,14 @@ struct ShapeProperties {
   bool carries_traffic = false;  ///< synthetic traffic runs on it
 };
 
+/// Whether rays of a network that is drawn go through the tree in packets, or each resource traces its own.
+enum class Tracing { kPackets, kStacks };
+template <>
+inline constexpr auto kEnumNames<Tracing> = [] {
+  using enum Tracing;
+  return names<Tracing>({{kPackets, "packets"}, {kStacks, "stacks"}});
+}();
+
 constexpr ShapeProperties properties_of(TopologyShape shape) {
   using enum TopologyShape;
   switch (shape) {
@@ -118,6 +126,7 @@ struct TopologyConfig {
   std::int64_t rings = 2;
   std::int64_t groups = 4;
   CentralForm form = CentralForm::kCells;
+  Tracing trace = Tracing::kPackets;  ///< of a graph
   Visit visit = Visit::kAll;
   Flow flow = Flow::kCredits;
   LinkConfig link;
@@ -131,9 +140,26 @@ struct TopologyConfig {
   ChannelRule channels = ChannelRule::kAny;
 };
 
+/// The properties of the configured network: the resources of a graph trace their own rays where it says so.
+constexpr ShapeProperties properties_of(const TopologyConfig& c) {
+  if (c.shape == TopologyShape::kGraph && c.trace == Tracing::kStacks) return {.has_packets = false};
+  return properties_of(c.shape);
+}
+
+/// What a network without packets calls itself in messages, for example "topology.shape: independent".
+constexpr std::string_view without_packets(const TopologyConfig& c) {
+  return c.shape == TopologyShape::kGraph ? "topology.trace: stacks" : "topology.shape: independent";
+}
+
 /// A packet_process that keeps the collections of resources; they own the rays and the testers, and it has none.
 inline bool is_manager(const GraphNode& node) {
   return node.kind == GraphNodeKind::kPacketProcess && !node.serves.empty();
+}
+
+/// Caches are nodes of the graph.
+inline bool has_drawn_caches(const TopologyConfig& c) {
+  return c.shape == TopologyShape::kGraph &&
+         std::ranges::any_of(c.nodes, [](const GraphNode& node) { return node.kind == GraphNodeKind::kCache; });
 }
 
 /// A machine of units that hold rays, collections and all testers (US 9633468): the shape, or a graph of such units.
@@ -248,6 +274,10 @@ void describe(V& v, TopologyConfig& c) {
   v.choice("form", c.form,
            "The form of a central machine, or of each packet_process of a graph: test cells (testers.simd.lanes), each "
            "for the rays of its places in ray memory, or testers behind a distributor (testers.distributor).");
+  v.choice("trace", c.trace,
+           "Rays of a graph go through the tree in packets of those that are at one node, over its links; or each "
+           "resource traces its own rays depth first, with a stack for each, as with topology.shape: independent.")
+      .only(EngineKind::kCycle, "", Tracing::kStacks);
   v.choice("visit", c.visit,
            "A packet is handled by all resources, or only by the owners of its rays, which point_to_point and graph "
            "imply.");

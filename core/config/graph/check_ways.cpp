@@ -116,13 +116,13 @@ void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
   for (const Graph::Link& link : graph.links) linked[link.from] = linked[link.to] = true;
   bool all = true;
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
-    if (linked[i]) continue;
+    if (linked[i] || (graph.stacks && i < graph.resources)) continue;
     all = all && i >= graph.resources;
     issues.push_back({fmt::format("topology.nodes.{}", graph.nodes[i].entry),
                       fmt::format("{} has no link; expected one to it and one from it", graph.nodes[i].name)});
   }
   if (!all) return;  // the ways that are missing are those
-  if (graph.resources < 2) return;
+  if (graph.resources < 2 || graph.stacks) return;
   if (const auto bus = graph.bus()) return check_bus_links(graph, *bus, issues);
   const Graph packets = graph.only(Carried::kPackets);
   for (std::size_t lane = 0; lane < packets.lanes; ++lane) {

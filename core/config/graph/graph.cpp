@@ -38,6 +38,7 @@ class Drawing {
       issue("topology.nodes", fmt::format("expected at most {} nodes, found {}", kMaxDrawn, graph_.nodes.size()));
       return {};
     }
+    graph_.stacks = !properties_of(config_).has_packets;
     if (managers_of(config_) > 0) find_served(config_, graph_, issues_);
     for (entry_ = 0; entry_ < config_.links.size(); ++entry_) {
       const GraphLink& link = config_.links[entry_];

@@ -52,12 +52,13 @@ struct Graph {
   Routing routing = Routing::kShortest;
   std::optional<std::uint32_t> root;  ///< the node at the top for up_down, if it is named
   std::vector<Hop> hops;              ///< the ways that are given, each node, destination and lane once
+  bool stacks = false;                ///< resources trace their own rays, and there are no packets
   /// By resource: the packet process that keeps its collections, itself for one of these. Empty: each keeps its own.
   std::vector<std::uint32_t> manager_of;
 
   /// Tells whether packets go from one resource to another: with packet processes, among those of one alone.
   bool packets_go(std::uint32_t from, std::uint32_t to) const {
-    return manager_of.empty() || manager_of[from] == manager_of[to];
+    return from == to || (!stacks && (manager_of.empty() || manager_of[from] == manager_of[to]));
   }
   /// Those that issue packets, in order.
   std::vector<std::uint32_t> issuers() const;

@@ -81,11 +81,12 @@ class BoundRules {
               fmt::format("bundles are made before their rays have slots; expected balanced or round_robin, "
                           "found {}{}",
                           enum_name(c.rays.placement), without));
-    if (c.topology.shape == TopologyShape::kIndependent)
-      breach_("topology.shape",
-              fmt::format("independent resources trace single rays; expected a ring or another network, "
-                          "found independent{}",
-                          without));
+    if (!properties_of(c.topology).has_packets) {
+      const bool drawn = c.topology.shape == TopologyShape::kGraph;
+      breach_(drawn ? "topology.trace" : "topology.shape",
+              fmt::format("independent resources trace single rays; expected {}, found {}{}",
+                          drawn ? "packets" : "a ring or another network", drawn ? "stacks" : "independent", without));
+    }
     if (std::bit_width(static_cast<std::uint64_t>(c.topology.resources - 1)) +
             std::bit_width(static_cast<std::uint64_t>(2 * c.rays.slots_per_resource)) >
         32)

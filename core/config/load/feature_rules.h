@@ -15,6 +15,9 @@ void check_query(const Config& config, const RuleBreach& breach);
 /// The rules of `bvh.treelets` and of `collections.grouped`, which needs them.
 void check_treelets(const Config& config, const RuleBreach& breach);
 
+/// The rules of drawings whose resources trace their own rays (`topology.trace: stacks`).
+void check_stacks(const Config& config, const RuleBreach& breach);
+
 /// The rules of rays in warps (`testers.simt`).
 void check_warps(const Config& config, const RuleBreach& breach);
 

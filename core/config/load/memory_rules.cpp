@@ -147,7 +147,7 @@ class MemoryRules {
 
   void travelling_rays_fit() {
     if (!cycle() || (c.rays.placement != Placement::kFirstTaker && c.rays.placement != Placement::kAddressed)) return;
-    if (c.topology.shape == TopologyShape::kIndependent)
+    if (!properties_of(c.topology).has_packets)
       breach_("rays.placement",
               fmt::format("independent resources have no packets in which rays could travel; expected "
                           "balanced or round_robin, found {}",
@@ -166,7 +166,7 @@ class MemoryRules {
     if (c.packets.carry == PacketCarry::kData && cycle())
       breach_("memory.fetch",
               "a packet that carries its shapes' data gets them from its issuer; expected packet, found multicast");
-    if (c.topology.shape == TopologyShape::kIndependent)
+    if (!properties_of(c.topology).has_packets)
       breach_("memory.fetch",
               "independent resources have no packets whose shapes others want; expected resource, found multicast");
     if (c.memory.l1_kib > 0)

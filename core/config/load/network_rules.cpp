@@ -128,8 +128,7 @@ class NetworkRules {
       breach_("rays.reads_per_cycle", fmt::format("each bank has a port of its own; expected 0, or rays.banks: 0; "
                                                   "found {}",
                                                   c.rays.reads_per_cycle));
-    if (c.topology.shape == TopologyShape::kIndependent || c.collections.traversal == Traversal::kTreelet ||
-        c.bundles.size > 0)
+    if (!properties_of(c.topology).has_packets || c.collections.traversal == Traversal::kTreelet || c.bundles.size > 0)
       breach_("rays.banks", fmt::format("banks are modelled where the rays of a packet are read for one test: not with "
                                         "independent, treelet or bundles; expected 0, found {}",
                                         c.rays.banks));
@@ -204,10 +203,9 @@ class NetworkRules {
 
   void own_rays_come_last_where_packets_go_round() {
     if (c.testers.own_rays != TestersConfig::OwnRays::kAfter) return;
-    if (!properties_of(c.topology.shape).has_packets)
-      breach_("testers.own_rays",
-              fmt::format("topology.shape: {} has no packets that come back; expected before, found after",
-                          enum_name(c.topology.shape)));
+    if (!properties_of(c.topology).has_packets)
+      breach_("testers.own_rays", fmt::format("{} has no packets that come back; expected before, found after",
+                                              without_packets(c.topology)));
     if (cycle() && c.memory.fetch == MemoryConfig::Fetch::kMulticast)
       breach_("testers.own_rays",
               "an issuer multicasts the shapes that it fetches before its packet leaves, for its own rays; expected "
@@ -217,10 +215,9 @@ class NetworkRules {
   void results_travel() {
     if (c.packets.results == PacketResults::kMask) return;
     const std::string_view found = enum_name(c.packets.results);
-    if (!properties_of(c.topology.shape).has_packets)
-      breach_("packets.results", fmt::format("topology.shape: {} has no packets that bring results; expected mask, "
-                                             "found {}",
-                                             enum_name(c.topology.shape), found));
+    if (!properties_of(c.topology).has_packets)
+      breach_("packets.results", fmt::format("{} has no packets that bring results; expected mask, found {}",
+                                             without_packets(c.topology), found));
     if (c.packets.results == PacketResults::kPerShape && c.collections.traversal == Traversal::kOrdered)
       breach_("packets.results",
               "traversal: ordered has one result for a whole strip, the next node; expected mask, message or "
@@ -232,9 +229,8 @@ class NetworkRules {
     const auto refuse = [&](bool wrong, const char* key, const std::string& message) {
       if (wrong) breach_(key, message);
     };
-    refuse(
-        !properties_of(c.topology.shape).has_packets, "collections.key",
-        fmt::format("topology.shape: {} has no collections; expected node, found block", enum_name(c.topology.shape)));
+    refuse(!properties_of(c.topology).has_packets, "collections.key",
+           fmt::format("{} has no collections; expected node, found block", without_packets(c.topology)));
     refuse(c.collections.traversal != Traversal::kOrdered, "collections.traversal",
            fmt::format("a ray that is in several collections has no node of its own in a block; expected ordered, or "
                        "collections.key: node; found {}",
@@ -264,11 +260,10 @@ class NetworkRules {
   }
 
   void windows_have_queues() {
-    if (properties_of(c.topology.shape).has_packets) return;
+    if (properties_of(c.topology).has_packets) return;
     const auto check = [&](const std::string& key, std::int64_t window) {
       if (window > 1)
-        breach_(key, fmt::format("topology.shape: {} has no input queues; expected 1, found {}",
-                                 enum_name(c.topology.shape), window));
+        breach_(key, fmt::format("{} has no input queues; expected 1, found {}", without_packets(c.topology), window));
     };
     check("testers.window", c.testers.window);
     for_each_own(c.topology, [&](const OwnOf& one) {
@@ -284,9 +279,8 @@ class NetworkRules {
               fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, r.number));
     if (c.workload.kind == WorkloadConfig::Kind::kTraffic && (resource || c.faults.links.any()))
       breach_("faults", "there are no faults in traffic; expected none, or workload: rays");
-    if (resource && !properties_of(c.topology.shape).has_packets)
-      breach_("faults.resource.kind",
-              fmt::format("{} resources have no faults; expected none", enum_name(c.topology.shape)));
+    if (resource && !properties_of(c.topology).has_packets)
+      breach_("faults.resource.kind", "independent resources have no faults; expected none");
     if (c.faults.links.any()) faulty_links_carry_packets();
     if (cycle() && r.kind == FaultsConfig::Resource::Kind::kSlow && r.after_rays > 0)
       breach_("faults.resource.after_rays",
@@ -306,9 +300,10 @@ class NetworkRules {
   /// A fault of a link that no packet crosses would never happen.
   void faulty_links_carry_packets() {
     constexpr std::string_view otherwise = "; expected no faults of links, or ";
-    if (!properties_of(c.topology.shape).has_packets)
-      breach_("faults.links", fmt::format("{} resources have no links{}another topology.shape",
-                                          enum_name(c.topology.shape), otherwise));
+    if (!properties_of(c.topology).has_packets)
+      breach_("faults.links", fmt::format("independent resources have no links{}{}", otherwise,
+                                          c.topology.shape == TopologyShape::kGraph ? "topology.trace: packets"
+                                                                                    : "another topology.shape"));
     else if (c.topology.resources == 1)
       breach_("faults.links", fmt::format("one resource has no links{}more topology.resources", otherwise));
     else if (c.collections.home == Home::kLocal)

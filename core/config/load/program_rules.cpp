@@ -158,6 +158,14 @@ class ProgramRules {
       issue("shading.idle_resources_shade",
             "resources have no units that run shader programs, which is not built; expected false with "
             "shading.program, found true");
+    const auto reads = [](const RayProgram& program) {
+      return std::ranges::any_of(
+          program.code, [](const Instruction& i) { return i.of == OpClass::kRead || i.of == OpClass::kTexture; });
+    };
+    if (has_drawn_caches(c_.topology) && std::ranges::any_of(programs.programs, reads))
+      issue("shading.program",
+            "caches that are drawn have no ports for data of shader programs yet; expected programs without read and "
+            "texture, or no node of the kind cache");
     const InstructionCacheConfig& cache = shading.instruction_cache;
     if (cache.line_bytes % kInstructionBytes != 0)
       issue("shading.instruction_cache.line_bytes",

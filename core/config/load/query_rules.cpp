@@ -46,7 +46,7 @@ void check_rounds(const Config& c, const RuleBreach& breach) {
              fmt::format("{}at most {}{}, or {}; found {}", rounds, QueryConfig::kMostBuffered,
                          query.buffer ? " with rays.query.buffer: auto" : "", message, query.nearest));
   };
-  if (c.topology.shape == TopologyShape::kIndependent) {
+  if (!properties_of(c.topology).has_packets) {
     no(c.engine.kind == EngineKind::kNative, "engine.kind: cycle, which alone has independent resources with rounds");
     return;
   }

@@ -224,7 +224,8 @@ void check_clocked_parts(const Config& config, const RuleBreach& breach) {
   for (std::size_t i = 0; i < c.links.size(); ++i)
     if (c.links[i].carries != GraphLink{}.carries)
       breach(fmt::format("topology.links.{}.carries", i),
-             "a drawing that carries more than packets has one clock yet; expected [packets], or equal clocks");
+             fmt::format("a drawing that carries more than packets has one clock yet; expected {}equal clocks",
+                         properties_of(c).has_packets ? "[packets], or " : ""));
   if (config.faults.links.any() && !traffic)
     breach("faults.links", "links between several clocks have no faults yet; expected none, or equal clocks");
   for (std::size_t i = 0; i < c.links.size() && is_bus(c); ++i)

@@ -38,7 +38,7 @@ void check_collections(const Config& c, const RuleBreach& refuse) {
 }  // namespace
 
 void check_treelets(const Config& c, const RuleBreach& breach) {
-  const bool packets = c.topology.shape != TopologyShape::kIndependent;
+  const bool packets = properties_of(c.topology).has_packets;
   if (c.collections.grouped && (c.bvh.treelets.bytes == 0 || !packets))
     breach("collections.grouped",
            "only rays at treelets of the whole tree are grouped; expected false, or bvh.treelets.bytes above 0 and "

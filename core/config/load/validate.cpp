@@ -48,6 +48,7 @@ class Rules {
     config::check_query(c, breach);
     hashed_homes_spill();
     config::check_graph(c, breach);
+    config::check_stacks(c, breach);
     config::check_rings(c, breach);
     config::check_own(c, breach);
     config::check_network(c, options_.force, breach);
@@ -159,9 +160,8 @@ class Rules {
             "bytes are charged on every hop; found packet");
   }
   bool packets_travel() const {
-    return c.topology.shape != TopologyShape::kIndependent && c.topology.resources > 1 &&
-           c.collections.home != Home::kLocal && c.workload.kind != WorkloadConfig::Kind::kTraffic &&
-           c.workload.kind != WorkloadConfig::Kind::kMemoryTrace;
+    return properties_of(c.topology).has_packets && c.topology.resources > 1 && c.collections.home != Home::kLocal &&
+           c.workload.kind != WorkloadConfig::Kind::kTraffic && c.workload.kind != WorkloadConfig::Kind::kMemoryTrace;
   }
 
   void stored_transform_fits() {
@@ -211,7 +211,7 @@ class Rules {
   }
 
   void order_has_a_depth_first_ray() {
-    if (c.collections.order == ChildOrder::kNearest || c.topology.shape == TopologyShape::kIndependent ||
+    if (c.collections.order == ChildOrder::kNearest || !properties_of(c.topology).has_packets ||
         c.bvh.treelets.bytes > 0)
       return;
     if (c.collections.traversal == Traversal::kSpread)

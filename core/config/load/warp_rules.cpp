@@ -29,10 +29,11 @@ class WarpRules {
     const SimtConfig& simt = of.simt;
     if (simt.warp == 0) return;
     const auto breach = [&](const char* key, std::string message) { breach_(testers + ".simt." + key, message); };
-    if (properties_of(c.topology.shape).has_packets)
-      breach("warp", fmt::format("warps are of resources that trace their own rays, not those of packets; expected 0, "
-                                 "or topology.shape: independent; found {}",
-                                 simt.warp));
+    if (properties_of(c.topology).has_packets)
+      breach("warp",
+             fmt::format("warps are of resources that trace their own rays, not those of packets; expected 0, "
+                         "or topology.shape: independent{}; found {}",
+                         c.topology.shape == TopologyShape::kGraph ? ", or topology.trace: stacks" : "", simt.warp));
     if (simt.warp > slots)
       breach("warp", fmt::format("no warp would ever be full; expected at most rays.slots_per_resource = {}, found {}",
                                  slots, simt.warp));

@@ -83,7 +83,21 @@ INSTANTIATE_TEST_SUITE_P(
               {"collections.home=hash", "collections.when_full=spill", "energy.profile=n7"}},
         Drawn{"BusFaults", "shape: bus, resources: 4", {"faults.links.drop=0.01"}},
         Drawn{"Cells", "shape: central, resources: 1", {"testers.simd.lanes=8", "testers.contexts=4"}},
-        Drawn{"Distributor", "shape: central, resources: 1, form: distributor"}),
+        Drawn{"Distributor", "shape: central, resources: 1, form: distributor"},
+        Drawn{"Stacks", "shape: independent, resources: 5", {"energy.profile=n45", "memory.shared_by=2"}},
+        Drawn{"StacksThatDiffer",
+              "shape: independent, resources: 3, overrides: [{resource: 1, slots_per_resource: 16, testers: {box: "
+              "{units: 2}}}]"},
+        Drawn{"OneStack", "shape: independent, resources: 1", {"memory.l1_kib=8", "memory.path_state=memory"}},
+        Drawn{"StacksInOrder", "shape: independent, resources: 2", {"collections.order=stored"}},
+        Drawn{"StacksInTreelets", "shape: independent, resources: 2", {"bvh.treelets.bytes=1000"}},
+        Drawn{"StacksWithAPrefetcher", "shape: independent, resources: 4", {"prefetcher.lines=2"}},
+        Drawn{"Warps", "shape: independent, resources: 3", {"testers.simt={warp: 8, warps: 2, stack_entries: 2}"}},
+        Drawn{"PackedWarps", "shape: independent", {"testers.simt={warp: 8, warps: 2, compaction: repack}"}},
+        Drawn{"HelpingLanes", "shape: independent", {"testers.simt={warp: 8, warps: 2, idle_lanes: help}"}},
+        Drawn{"WarpsThatPrefetch",
+              "shape: independent",
+              {"bvh.treelets.bytes=2048", "testers.simt={warp: 8, warps: 2, prefetch: treelet, prefetch_rays: 2}"}}),
     [](const auto& one) { return one.param.name; });
 
 const char* const kClusters =
@@ -249,14 +263,6 @@ TEST(GraphRun, WaysAndToursKeepThePictureAndChangeTheTime) {
   }
   EXPECT_EQ(digests.size(), 1u);
   EXPECT_GT(cycles.size(), 1u);
-}
-
-TEST(GraphRun, ShapesThatAreNoGraphsAreRefused) {
-  const Program program;
-  program.write("apart.yaml", kMachine + "topology: {shape: independent}\n");
-  const Outcome apart = program.run({"check", "apart.yaml", "--graph"});
-  EXPECT_EQ(apart.status, 2);
-  EXPECT_THAT(apart.err, HasSubstr("apart.yaml:6:19: topology.shape: a graph cannot say independent yet: it has no"));
 }
 
 TEST(GraphRun, APacketKeepsItsLane) {

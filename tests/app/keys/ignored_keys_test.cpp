@@ -71,6 +71,7 @@ TEST_F(IgnoredKeys, ChangeNothing) {
       {kTerrain, {"topology.resources=1"}},
       {kTerrain, {"topology.shape=independent"}},
       {kTerrain, {"topology.shape=independent", "testers.simt.warp=8"}},
+      {kTerrain, {"topology={shape: graph, trace: stacks, nodes: [{name: r, count: 3}]}"}},
       {kTerrain, {"topology.shape=central", "topology.resources=1", "testers.simd.lanes=8"}},
       {kTerrain, {"topology.shape=central", "topology.form=distributor", "topology.resources=1"}},
       {kTerrain, {"collections.home=local", "memory.dram.preset=hbm2_2", "energy.profile=n45"}},

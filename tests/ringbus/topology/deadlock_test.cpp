@@ -26,7 +26,7 @@ TEST(DeadlockVerdict, NamesTheRuleThatProtects) {
   c.resources = 5;
   c.shape = TopologyShape::kIndependent;
   EXPECT_FALSE(deadlock_verdict(c).can_deadlock);
-  EXPECT_NE(deadlock_verdict(c).rule.find("no links"), std::string::npos);
+  EXPECT_NE(deadlock_verdict(c).rule.find("no packets"), std::string::npos);
 }
 
 TEST(CheckStorage, AsksForWhatDrainingNeeds) {
