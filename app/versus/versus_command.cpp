@@ -52,6 +52,7 @@ int versus_command(const VersusArguments& arguments) {
   } else if (!arguments.quiet) {
     std::string text;
     for (const std::string& line : versus.lines) text += line + "\n";
+    if (versus.drawing) text += *versus.drawing + "\n";
     print_text(text + (failure ? "files: none, they cannot be written\n"
                                : "files: " + (folder / "versus.json").string() + ", versus.html\n"));
   }

@@ -45,11 +45,14 @@ class VersusRuns {
     report::Versus out;
     out.seeds = settings_.seeds;
     out.profile = enum_name(located_.config.energy.profile);
-    const Config machine = located_.config, twin = conventional_twin(located_);
+    const Config machine = located_.config;
+    const Twin conventional = conventional_twin(located_);
+    const Config& twin = conventional.config;
+    if (!conventional.drawing.empty()) out.drawing = conventional.drawing;
     out.twin_sets = config_differences(machine, twin);
     add(out, "machine", machine);
     add(out, "twin", twin);
-    add_at_equal_area(out, twin, out.machines.front().mm2);
+    add_at_equal_area(out, conventional.plain, out.machines.front().mm2);
     for (std::size_t i = 1; i < out.machines.size(); ++i) out.against.push_back(against(out, out.machines[i].name));
     if (settings_.search) turn_round(out, machine, twin);
     out.lines = report::versus_lines(out);

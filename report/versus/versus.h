@@ -123,6 +123,7 @@ struct Versus {
   std::vector<VersusPair> against{};
   std::vector<VersusTurn> turns{};
   std::vector<std::string> lines{}, twin_sets{};
+  std::optional<std::string> drawing{};
   std::vector<VersusRun> runs{};
   std::optional<AreaSearch> search{}, twin_search{};
   std::optional<std::string> checksum{};  ///< set where the text is written (report/read/document.h)
@@ -139,6 +140,8 @@ void describe(V& v, const Versus& r) {
   v.section("against", r.against, "this machine against each twin");
   v.section("turns", r.turns, "the slower machine with each class of its parts relaxed, the greatest gain first");
   v.field("twin_sets", r.twin_sets, "", "keys in which the twin differs from this machine, with its values");
+  v.field("drawing", r.drawing, "",
+          "of a machine that is drawn: how the twin's network follows from the drawing, or why it does not");
   v.section("runs", r.runs, "every simulated frame");
   v.section("search", r.search, "the search for this machine's best split of area.budget_mm2, with area.fit: best");
   v.section("twin_search", r.twin_search, "likewise, that of the twin at equal area");

@@ -155,6 +155,7 @@ std::string versus_page(const Json& versus) {
   Html twin = markup("<p>The twin is this machine with these keys:</p>\n<ul>\n");
   for (const Json& set : versus["twin_sets"]) twin += markup("<li><code>{}</code></li>\n", set.get<std::string>());
   twin += markup("</ul>\n");
+  if (versus.contains("drawing")) twin += markup("<p>Of the drawing: {}.</p>\n", versus["drawing"].get<std::string>());
   return page_of("Carousel: a machine against its conventional twin", "carousel versus",
                  {{"verdict", "At a glance", glance},
                   {"machines", "The machines", bars_of(machines, "Rays per kilocycle")},

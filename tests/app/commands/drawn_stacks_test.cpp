@@ -130,5 +130,61 @@ TEST(DrawnStacks, ADrawingIsItsOwnDrawing) {
             report_of(program, "clusters.yaml")["engine"]["cycles"]);
 }
 
+TEST(DrawnStacks, TheTwinOfADrawingIsTheDrawingWithoutPackets) {
+  const Program program;
+  program.write("packets.yaml", kScene + kClusters);
+  const std::vector<std::string> more{
+      "--no-search",
+      "--set",
+      "topology.trace=packets",
+      "--set",
+      "topology.links.4={from: 'left[*], right[*]', to: x, both: true, carries: [packets, new_rays, completed_rays]}",
+      "--set",
+      "topology.links.5={ring: 'left[*], right[*]'}"};
+  const auto versus = [&](const std::string& file, std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), {"versus", file});
+    const Outcome outcome = program.run(arguments);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome;
+  };
+  std::vector<std::string> arguments = more;
+  arguments.insert(arguments.end(), {"--out", "o"});
+  EXPECT_THAT(versus("packets.yaml", arguments).out, HasSubstr("\nthe twin has the drawing of this machine without "
+                                                               "packets; at equal area"));
+  const Json json = Json::parse(program.read("o/versus.json"));
+  EXPECT_THAT(json["twin_sets"].dump(), HasSubstr("topology.trace=stacks"));
+  EXPECT_THAT(program.read("o/versus.html"), HasSubstr("the twin has the drawing"));
+  // The twin by hand.
+  const Json twin = report_of(program, "packets.yaml", {"testers.simt={warp: 32, warps: 2}"});
+  EXPECT_EQ(json["runs"][json["seeds"].get<std::size_t>()]["machine"], "twin");
+  EXPECT_EQ(json["runs"][json["seeds"].get<std::size_t>()]["cycles"], twin["engine"]["cycles"]);
+
+  const Outcome processes = versus(CAROUSEL_SOURCE_DIR "/configs/packet_processes.yaml",
+                                   {"--no-search", "--set", "image={width: 12, height: 8, samples: 1, max_depth: 1}",
+                                    "--set", "scene.triangles=300", "--out", "p"});
+  EXPECT_THAT(processes.out, HasSubstr("the twin is not drawn, and has wires of its own: the drawing of packet "
+                                       "processes"));
+}
+
+TEST(DrawnStacks, TheTwinOfPacketsAloneIsNotDrawn) {
+  const Program program;
+  program.write("rings.yaml",
+                kScene +
+                    "clocks: {slow: 700}\ntopology: {shape: graph, nodes: [{name: r, count: 3}, {name: x, "
+                    "kind: router, clock: slow}], links: [{ring: 'r[*], x', clock: slow}]}\n");
+  const Outcome outcome = program.run({"versus", "rings.yaml", "--no-search", "--out", "o"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("has wires of its own: links of this machine carry packets alone"));
+}
+
+TEST(DrawnStacks, AMachineInWarpsHasNoTwin) {
+  const Program program;
+  program.write("clusters.yaml", kScene + kClusters);
+  const Outcome outcome = program.run({"versus", "clusters.yaml", "--set", "testers.simt.warp=8", "--out", "o"});
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("clusters.yaml:8:10: topology.trace: this machine is the conventional one itself, "
+                                     "with warps of 8; expected packets, or testers.simt.warp: 0; found stacks"));
+}
+
 }  // namespace
 }  // namespace carousel::drawn_stacks_test
