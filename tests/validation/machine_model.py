@@ -12,7 +12,8 @@ That the comparison can fail is tried in every run: each of LIES gives the model
 engine's, and some machine must then disagree.
 
 Left out, as in the page: any-hit calls, cull planes, bundles, bounding spheres, leaves held in nodes, faults,
-idle_resources_shade, distribute: random, point_to_point, raster, traffic; of graphs, ways that are not the shortest.
+idle_resources_shade, distribute: random, point_to_point, raster, traffic; of graphs, ways that are not the shortest,
+and caches, memories and shading beside packets; warps.
 """
 import argparse
 import copy

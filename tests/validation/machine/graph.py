@@ -8,9 +8,9 @@ from .network import InPort, OutPort, Topology
 
 
 def names_of(nodes):
-    """The numbers of nodes by name, and by group: resources first, then routers."""
+    """The numbers of nodes by name, and by group: kind by kind."""
     numbers, groups, drawn = {}, {}, []
-    for kind in ("resource", "router"):
+    for kind in ("resource", "router", "cache", "memory", "shading"):
         for node in nodes:
             if node.get("kind", "resource") != kind:
                 continue
@@ -29,7 +29,7 @@ class Drawing:
     def __init__(self, topology):
         self.numbers, self.groups, self.nodes = names_of(topology["nodes"])
         self.resources = sum(node.get("kind", "resource") == "resource" for node in self.nodes)
-        self.links = []  # (from, to, latency, width, depth, lane); lane None: of all packets
+        self.links = []  # (from, to, latency, width, depth, lane, carries); lane None: of all packets
         for link in topology["links"]:
             first, lanes = link.get("lane", "auto"), link.get("lanes", 1)
             own = first != "auto" or lanes > 1
@@ -66,10 +66,12 @@ class Drawing:
         own = lambda key: all_links[key] if link.get(key, "auto") == "auto" else link[key]
         for pair in pairs:
             for a, b in [pair, pair[::-1]] if link.get("both") else [pair]:
-                self.links.append((a, b, own("latency_cycles"), own("bytes_per_cycle"), own("depth"), lane))
+                self.links.append((a, b, own("latency_cycles"), own("bytes_per_cycle"), own("depth"), lane,
+                                   link.get("carries", ["packets"])))
 
-    def ways(self, lane):
-        """By node and destination: the link by which the shortest way of a packet of the lane begins."""
+    def ways(self, lane, kind="packets"):
+        """By node and destination: the link by which the shortest way of a packet of the lane, or of another kind of
+        messages, begins."""
         count = len(self.nodes)
         far = math.inf
         table = [[None] * count for _ in range(count)]
@@ -77,12 +79,12 @@ class Drawing:
             distance = [far] * count
             distance[start] = 0
             for _ in range(count):
-                for a, b, latency, *_ in self.of(lane):
+                for a, b, latency, *_ in self.of(lane, kind):
                     distance[b] = min(distance[b], distance[a] + latency)
             # The last link of each way: from the node that is nearest to the start, and of the lowest number.
             last = [None] * count
             for i, (a, b, latency, *_) in enumerate(self.links):
-                if self.links[i][5] not in (None, lane):
+                if self.links[i] not in self.of(lane, kind):
                     continue
                 if b != start and distance[a] + latency == distance[b] < far:
                     if last[b] is None or (distance[a], a) < (distance[self.links[last[b]][0]], self.links[last[b]][0]):
@@ -94,8 +96,8 @@ class Drawing:
                 table[start][end] = last[at]
         return table
 
-    def of(self, lane):
-        return [link for link in self.links if link[5] in (None, lane)]
+    def of(self, lane, kind="packets"):
+        return [link for link in self.links if link[5] in (None, lane) and kind in link[6]]
 
 
 def rings_of_rings(topology):
@@ -276,7 +278,7 @@ def connect_graph(clock, topology, places):
     """The ports of each resource, and the routers behind them."""
     drawing = topology.drawing
     ends = [([None] * len(topology.ins[n]), [None] * len(topology.outs[n])) for n in range(len(drawing.nodes))]
-    for i, (a, b, latency, _, depth, _) in enumerate(drawing.links):
+    for i, (a, b, latency, _, depth, *_) in enumerate(drawing.links):
         packets, credits = Channel(clock), Channel(clock)
         room = drawing.nodes[a].get("buffers", "auto") if a >= topology.resources else places
         if room == "auto" or (a < topology.resources and topology.room):

@@ -2,8 +2,9 @@
 from .clock import Clock, Trace
 from .dram import BankedMemory
 from .graph import GraphTopology, connect_graph, rings_of_rings
-from .memory import Memory, ShapePort, caches_of
+from .memory import Memory, ShapePort, caches_of, own_caches
 from .network import Topology, connect
+from .parcels import Parcels
 from .prefetcher import prefetchers_of
 from .ray_data import RayData
 from .shading import Shading
@@ -22,6 +23,9 @@ class Machine:
         config = facts["config"]
         if config["topology"]["shape"] == "hierarchical":
             config = {**config, "topology": rings_of_rings(config["topology"])}
+        stacks = config["topology"].get("trace") == "stacks" and config["topology"]["shape"] == "graph"
+        if stacks:
+            config = {**config, "topology": {**config["topology"], "shape": "independent"}}
         self.config = config
         self.facts, self.clock, self.trace = facts, Clock(), Trace()
         self.nodes = [Node(i, fact) for i, fact in enumerate(facts["nodes"])]
@@ -40,10 +44,18 @@ class Machine:
         else:
             self.tiles = [Tile(r, self, ends[r], shapes[r], controls[r]) for r in range(resources)]
         self.ray_data = RayData(config, facts, self.clock)
-        l2, caches = caches_of(config, self.clock, shapes, self.ray_data.ports)
-        self.shading = Shading(self, controls)
+        parcels = Parcels(config, self.clock, shapes, controls) if stacks else None
+        if parcels and parcels.groups_of("cache"):
+            own = own_caches(config, self.clock, shapes)
+            l2 = parcels.join_caches(own)
+            caches = own + l2
+        else:
+            l2, caches = caches_of(config, self.clock, shapes, self.ray_data.ports)
+        askers = (parcels.join_memories(l2) if parcels else []) or [l2]
+        self.shading = Shading(self, parcels.join_rays() if parcels else controls)
         prefetchers = prefetchers_of(config, self.clock, shapes, l2)
-        self.parts = [*self.tiles, *ends[resources:], *caches, *prefetchers, memory(config, l2), self.shading]
+        self.parts = [*self.tiles, *ends[resources:], *caches, *prefetchers, *(memory(config, one) for one in askers),
+                      self.shading, *(parcels.relays if parcels else [])]
 
     def run(self):
         """The cycle at which each ray has been shaded, by its name."""

@@ -271,9 +271,8 @@ class Cache:
             self.clock.wake(request.ready)
 
 
-def caches_of(config, clock, ports, shading):
-    """The caches, with the L2s behind the resources' own ones if they have any: L2s, all. `shading` has a port for each
-    L2, or none."""
+def own_caches(config, clock, ports):
+    """Those of the resources, if they have any."""
     m = config["memory"]
     own = []
     if m.get("l1_kib"):
@@ -281,7 +280,14 @@ def caches_of(config, clock, ports, shading):
                        l2_mshrs=m["l1_mshrs"], l2_latency_cycles=m["l1_latency_cycles"], l2_banks=1, l2_write="through", l2_ray_ways=0, l2_answer_bytes_per_cycle=0,
                        dram_latency_cycles=m["l2_latency_cycles"])
         own = [Cache({"memory": nearest}, clock, [port]) for port in ports]
-    shared, l2 = m["shared_by"], []
+    return own
+
+
+def caches_of(config, clock, ports, shading):
+    """The caches, with the L2s behind the resources' own ones if they have any: L2s, all. `shading` has a port for each
+    L2, or none."""
+    own = own_caches(config, clock, ports)
+    shared, l2 = config["memory"]["shared_by"], []
     for first in range(0, len(ports), shared):
         last = first + shared
         beside = shading[len(l2):len(l2) + 1]

@@ -242,7 +242,67 @@ def draw(seed, index):
         topology.update(draw_graph(r, topology["resources"], config["packets"]["results"] in ("mask", "implied_order")))
     draw_rings_of_rings(random.Random(seed * 1000003 + index + 2), config)
     draw_levels(random.Random(seed * 1000003 + index + 3), config)
+    draw_stacks(random.Random(seed * 1000003 + index + 4), config)
     return config
+
+
+def draw_stacks(r, config):
+    """Draws some machines whose resources trace their own rays."""
+    topology = config["topology"]
+    if topology["shape"] == "independent" and r.random() < 0.5:
+        topology.update(shape="graph", trace="stacks", nodes=[{"name": "r", "count": topology["resources"]}], links=[])
+        if r.random() < 0.7:
+            draw_parts(r, config)
+
+
+def draw_parts(r, config):
+    """Caches, memories and shading behind links: a ring of all nodes, and links across."""
+    pick, topology, memory = r.choice, config["topology"], config["memory"]
+    resources, nodes = topology["resources"], topology["nodes"]
+    config.pop("prefetcher", None)
+    if "program" in config["shading"]:  # drawn caches have no ports for what programs read
+        for key in ("program", "registers", "instruction_cache"):
+            config["shading"].pop(key)
+        config.pop("programs")
+    for key in ("path_state", "film", "ray_records", "sky_map", "l2_ray_ways"):
+        memory.pop(key, None)
+    nodes[0]["latency_cycles"] = pick([0, 0, 2])
+    names = [f"r[{i}]" for i in range(resources)]
+
+    def add(name, kind, count, **more):
+        nodes.append({"name": name, "kind": kind, "count": count, "latency_cycles": pick([0, 0, 1, 3]), **more})
+        names.extend(f"{name}[{i}]" for i in range(count))
+
+    for i in range(pick([0, 1])):
+        add("x", "router", pick([1, 2]))
+    kinds = []
+    if r.random() < 0.8:
+        kinds.append("shapes")
+        lone = memory.get("strip_end") == "flag"
+        interleave = lambda: pick([{}, {"interleave_bytes": memory["line_bytes"] * pick([1, 2, 8])}])
+        first = r.randint(1, resources)
+        behind = r.random() < 0.7
+        banks = lambda: 1 if lone or not behind else pick([1, 2, 3])
+        add("a", "cache", banks(), serves=f"r[0..{first - 1}]", **interleave())
+        if first < resources:
+            add("b", "cache", banks(), serves=f"r[{first}..{resources - 1}]", **interleave())
+        if behind:
+            add("m", "memory", pick([1, 1, 2]), **interleave())
+    if not kinds or r.random() < 0.6:
+        add("s", "shading", 1)
+        kinds += pick([["new_rays"], ["completed_rays"], ["new_rays", "completed_rays"]])
+    r.shuffle(names)
+
+    def link(**ends):
+        own = {"latency_cycles": pick([1, 2, 5])} if r.random() < 0.5 else {}
+        if r.random() < 0.5:
+            own["bytes_per_cycle"] = pick([4, 16, 64])
+        return {**ends, **own}
+
+    topology["links"] = [link(ring=", ".join(names), both=True, carries=kinds)]
+    if len(names) > 3:
+        topology["links"].append(link(**{"from": names[0], "to": names[2], "both": pick([True, False]),
+                                         "carries": r.sample(kinds, r.randint(1, len(kinds)))}))
 
 
 def draw_rings_of_rings(r, config):
