@@ -51,24 +51,9 @@ class Channel : public AnyChannel {
     if (!back.equal()) returns_by_ = std::make_unique<const ClockRatio>(back);
   }
 
-  void send(Cycle arrival, T thing) {
-    if (there_ != nullptr) [[unlikely]]
-      arrival = there_->enter(arrival);
-    if constexpr (kChecked) {
-      if (arrival < last_sent_) throw std::logic_error("a channel's arrivals go back in time");
-      last_sent_ = arrival;
-    }
-    if constexpr (kHasBytes) bytes_sent_ += thing.bytes();
-    const std::size_t sent = sent_.load(std::memory_order_relaxed) + 1;
-    tail_.item->arrival = arrival;
-    tail_.item->thing = std::move(thing);
-    if (sent % kBlock == 0) [[unlikely]]
-      begin_block(sent);
-    else
-      ++tail_.item;
-    sent_.store(sent, std::memory_order_release);  // publishes the item, and what follows its block
-    if (arrival < *wake_) *wake_ = arrival;
-  }
+  void send(Cycle arrival, T thing) requires(!Returns) { put(arrival, std::move(thing)); }
+  /// Inlined, as most of what a network does is that packets pass.
+  [[gnu::always_inline]] void send(Cycle arrival, const T& thing) requires Returns { put(arrival, thing); }
   void wakes(Cycle& slot) override { wake_ = &slot; }
 
   /// Arrival of the first thing; kNever when there is none.
@@ -83,7 +68,7 @@ class Channel : public AnyChannel {
   /// std::logic_error).
   T take(Cycle back) requires Returns {
     if (returns_by_ != nullptr) [[unlikely]]
-      back = returns_by_->enter(back);
+      back = entered(*returns_by_, back);
     if constexpr (kChecked) {
       if (back < last_back_) throw std::logic_error("a channel's places come back in another order");
       last_back_ = back;
@@ -182,6 +167,27 @@ class Channel : public AnyChannel {
     Cycle next = kNever;  // when it learns of that place, once it has been looked at
   };
 
+  /// Out of line, as few channels have two clocks.
+  [[gnu::noinline]] static Cycle entered(const ClockRatio& clock, Cycle at) { return clock.enter(at); }
+  template <class Thing>
+  [[gnu::always_inline]] void put(Cycle arrival, Thing&& thing) {
+    if (there_ != nullptr) [[unlikely]]
+      arrival = entered(*there_, arrival);
+    if constexpr (kChecked) {
+      if (arrival < last_sent_) throw std::logic_error("a channel's arrivals go back in time");
+      last_sent_ = arrival;
+    }
+    if constexpr (kHasBytes) bytes_sent_ += thing.bytes();
+    const std::size_t sent = sent_.load(std::memory_order_relaxed) + 1;
+    tail_.item->arrival = arrival;
+    tail_.item->thing = std::forward<Thing>(thing);
+    if (sent % kBlock == 0) [[unlikely]]
+      begin_block(sent);
+    else
+      ++tail_.item;
+    sent_.store(sent, std::memory_order_release);  // publishes the item, and what follows its block
+    if (arrival < *wake_) *wake_ = arrival;
+  }
   Item& item(std::size_t place) const {
     const std::size_t taken = taken_.load(std::memory_order_relaxed);
     Block* block = head_.block;
