@@ -129,7 +129,9 @@ def config_pages(program, folder, missing):
         for key, _, _, _, meaning in rows:
             example, why = examples[key.strip("`")]
             if example is None:
-                missing.append(f"web/docs/key_examples.py: KEYS lacks a row that makes {key.strip('`')} valid. Tried:\n{why}")
+                plain = key.strip("`")
+                missing.append(f'web/docs/key_examples.py: add to KEYS the settings with which {plain} has an effect, such as\n'
+                               f'    "{plain}": ["other.key=VALUE"],\nor to UNDER those for all keys that begin alike. Tried:\n{why}')
             page += ["", f"## {key}", "", meaning, "", "```yaml", (example or "").rstrip(), "```"]
         pages[f"config/{name}.md"] = "\n".join(page) + "\n"
     return {"config/index.md": "\n".join(index) + "\n", **pages}
