@@ -1,0 +1,129 @@
+"""bench/studies/when_it_pays with a program that only seems to simulate: what is killed goes on, shards share the runs and
+end in time, and machines that differ in a hit are told."""
+import json
+import os
+import pathlib
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+STUDY = ROOT / "bench/studies/when_it_pays"
+
+# Notes each call. Cycles follow from the machine, hits from scene and rays. KILL_AT kills the study in a call, and LIE_AT
+# gives a call other hits.
+PROGRAM = '''#!/usr/bin/env python3
+import hashlib, json, os, pathlib, signal, sys
+here = pathlib.Path(__file__).parent
+calls = here / "calls"
+with open(calls, "a") as out:
+    out.write(json.dumps(sys.argv[1:]) + "\\n")
+number = len(calls.read_text().splitlines())
+if number == int(os.environ.get("KILL_AT", 0)):
+    os.kill(os.getppid(), signal.SIGKILL)
+if "--dump-rays" in sys.argv:
+    rows = ["ray,kind,ox,oy,oz,dx,dy,dz,tmin,tmax"]
+    rows += [f"{i},{('camera', 'bounce', 'shadow')[i % 3]},0,0,{i},0,0,1,0,inf" for i in range(60)]
+    pathlib.Path(sys.argv[sys.argv.index("--dump-rays") + 1]).write_text("\\n".join([*rows, "# end of 60", ""]))
+    sys.exit(0)
+sets = [word for before, word in zip(sys.argv, sys.argv[1:]) if before == "--set"]
+rays = [word for word in sets if word.startswith(("scene.", "image.", "workload="))]
+number_of = lambda words: int(hashlib.sha256(json.dumps(words).encode()).hexdigest()[:6], 16)
+print(json.dumps({
+    "digest": {"hits": "wrong" if number == int(os.environ.get("LIE_AT", 0)) else number_of(rays)},
+    "engine": {"cycles": 1000 + number_of([sys.argv[2], *sets]) % 1000}, "rays": {"completed": 5000},
+    "energy": {"nj_per_ray": 1 + number_of(sets) % 7}, "area": {"mm2": 40}, "structure": {"bytes": 500000},
+    "config": {"topology": {"resources": 8}, "rays": {"slots_per_resource": 32}}}))
+'''
+
+
+class WhenItPays(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        self.path = pathlib.Path(self.folder.name)
+        (self.path / "carousel").write_text(PROGRAM)
+        (self.path / "carousel").chmod(0o755)
+
+    def study(self, *options, **environment):
+        return subprocess.run([sys.executable, STUDY, "--grid", "try", "--build", self.path, "--out", self.path / "out", *options],
+                              capture_output=True, text=True, env={**os.environ, **environment})
+
+    def calls(self):
+        """What was asked of the program since the last time: runs of machines, without those that make lists of rays."""
+        file = self.path / "calls"
+        calls = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+        file.unlink(missing_ok=True)
+        return [call[1:] for call in calls if "--dump-rays" not in call]
+
+    @staticmethod
+    def machines(calls):
+        """Without the folder of results, which is another one each time."""
+        return [tuple(word for word in call if "/tmp" not in word or "rays_from" in word) for call in calls]
+
+    def test_a_killed_study_goes_on(self):
+        whole = self.study()
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        all_runs = self.calls()
+        said = int(re.search(r"(\d+) runs are left", whole.stderr)[1])
+        self.assertEqual(len(all_runs), said)
+        self.assertEqual(len(set(self.machines(all_runs))), said, "no run is made twice")
+        self.assertEqual(whole.stdout.count("\n"), 2 + 4 * 2, "a row for each kind of rays and number of channels")
+        again = self.study()
+        self.assertEqual(again.stdout, whole.stdout)
+        self.assertEqual(self.calls(), [])
+        for file in (self.path / "out").glob("*.json"):
+            file.unlink()
+        killed = self.study(KILL_AT="20")
+        self.assertEqual(killed.returncode, -signal.SIGKILL)
+        kept = [json.loads(file.read_text()) for file in (self.path / "out").glob("*.json")]
+        self.assertEqual(len(kept), len(self.calls()) - 1, "the run that was under way is not kept")
+        rest = self.study()
+        self.assertEqual(rest.stdout, whole.stdout)
+        self.assertEqual(len(self.calls()), said - len(kept))
+
+    def test_shards_share_the_runs(self):
+        said, seen = None, []
+        for shard in ("1/3", "2/3", "3/3"):
+            done = self.study("--shard", shard)
+            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+            said = said or int(re.search(r"(\d+) runs are left", done.stderr)[1])
+            mine = self.machines(self.calls())
+            self.assertEqual(len(mine), said // 3)
+            seen += mine
+        self.assertEqual(len(set(seen)), said)
+        self.assertEqual(len(seen), said)
+        self.assertIn("| terrain | camera |", self.study().stdout)
+        self.assertEqual(self.calls(), [])
+
+    def test_a_shard_ends_in_time(self):
+        late = self.study("--hours", "0")
+        self.assertEqual(late.returncode, 75)
+        self.assertEqual(self.calls(), [])
+        counted = self.study("--count")
+        self.assertEqual(counted.returncode, 0)
+        self.assertEqual(self.calls(), [])
+        self.assertRegex(counted.stderr, r"\d+ runs are left of 0 for tuning and \d+ for the map, some \d+\.\d hours")
+
+    def test_other_hits_are_told(self):
+        lie = self.study(LIE_AT="7")
+        self.assertEqual(lie.returncode, 1)
+        self.assertIn("machines differ in a hit", lie.stderr)
+
+    def test_lists_hold_one_kind_of_rays(self):
+        self.assertEqual(self.study().returncode, 0)
+        for kind, name in (("shadow", "shadow"), ("bounce", "shuffled")):
+            files = sorted((self.path / "out/rays").glob(f"*-{name}-*.csv"))
+            self.assertEqual(len(files), 2, "a list for each seed")
+            rows = [line.split(",") for line in files[0].read_text().splitlines()[1:]]
+            self.assertEqual({row[1] for row in rows}, {kind})
+            self.assertEqual([int(row[0]) for row in rows], list(range(20)))
+            places = [int(row[4]) for row in rows]
+            self.assertEqual(places == sorted(places), kind == "shadow")
+
+
+if __name__ == "__main__":
+    unittest.main()
