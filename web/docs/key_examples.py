@@ -41,6 +41,7 @@ NEXT = WAYS[:-1] + ["topology.ways=[{at: 'r[3]', to: 'r[0]', next: 'r[2]'}, {at:
 GRAPH_TRAFFIC = ["workload.traffic.rate=0.1", "topology.shape=graph", "topology.nodes=[{name: r, count: 4}]"]
 SHADER = ["programs.shaders.grey.parameters={n: 1}", "programs.shaders.grey.program=['load a, n', 'texture b, a', 'mov c, b']",
           "shading.program.default=grey"]
+DATA_CACHE = ["shading.program.default=built_in", "shading.data_cache.bytes=4096"]
 
 UNDER = {
     "scene.gaussians.": ["scene.builtin=gaussians", "rays.query.nearest=8"],
@@ -73,6 +74,8 @@ UNDER = {
     "memory.l1_": ["memory.l1_kib=16"],
     "memory.dram.": ["memory.dram.preset=gddr6_14"],
     "prefetcher.": ["prefetcher.lines=2"],
+    "shading.data_cache.": DATA_CACHE,
+    "shading.translation.": DATA_CACHE + ["shading.translation.page_bytes=4096"],
     "shading.instruction_cache.": ["shading.program.default=built_in", "shading.instruction_cache.bytes=512"],
         "faults.links.": ["topology.visit=owners"],
     "faults.resource.": ["faults.resource.kind=pause"],
@@ -109,6 +112,7 @@ KEYS = {
     "camera.focus_distance": ["camera.aperture=0.1"],
     "image.files": ["image.files=[png, tiff]"],
     "frames.builder.local_primitives": ["scene.builtin=terrain", "frames.count=2", "frames.update=rebuild"],
+    "frames.cluster_primitives": ["scene.builtin=terrain", "frames.count=2", "frames.update=clusters"],
     "engine.lanes": ["scene.builtin=cornell", "engine.kind=native", "collections.traversal=treelet"],
     "engine.memory_limit_mib": ["engine.memory_limit_mib=4096"],
     "engine.plugins": ["engine.plugins=[build/libown_policy.so]", "collections.policy=broad_first"],
@@ -162,6 +166,8 @@ KEYS = {
     "topology.ways.0.at": NEXT,
     "topology.ways.0.to": NEXT,
     "topology.ways.0.next": NEXT,
+    "topology.trace": CACHES[:2] + ["topology.links=[{from: 'r[*]', all_to: 'a[*]', both: true, carries: [shapes]}, "
+                                    "{from: 'a[*]', to: d, both: true, carries: [shapes]}]"],
     "topology.tour": GRAPH[:2] + ["topology.links=[{ring: 'r[0], r[2], r[1], r[3]', both: true}]"],
     "topology.channels": GRAPH_TRAFFIC + ["topology.link.virtual_channels=4", "topology.links=[{line: 'r[*]', both: true}]"],
     "rays.query.nearest": ["scene.builtin=terrain"],
@@ -169,6 +175,7 @@ KEYS = {
     "rays.query.hits": RAY_FILE,
     "rays.query.buffer": ["rays.query.nearest=8", "collections.traversal=ordered"],
     "rays.query.rounds": ["rays.query.nearest=8", "rays.query.buffer=1", "collections.traversal=ordered"],
+    "rays.query.harmonic_steps": ["scene.builtin=gaussians", "scene.gaussians.degree=1", "rays.query.nearest=8"],
     "rays.query.response_steps": ["scene.builtin=gaussians", "rays.query.nearest=8"],
     "rays.hits_per_ray": RAY_FILE + ["rays.query.hits=all"],
     "collections.order": ["collections.traversal=ordered"],
@@ -190,6 +197,7 @@ KEYS = {
     "bvh.micromaps.states": ["scene.builtin=foliage"],
     "bvh.quality": ["scene.builtin=cornell"],
     "accuracy.instance_data": ["scene.builtin=instances", "accuracy.transform=inverse_matrix"],
+    "accuracy.products": ["energy.profile=n45"],
     "accuracy.invert": ["scene.builtin=instances"],
     "accuracy.transformed_ray": ["scene.builtin=instances"],
     "accuracy.transform": ["scene.builtin=instances"],
@@ -238,6 +246,10 @@ KEYS = {
         "miss", "shadow", "camera", "unlit", "plain", "textured", "layered", "opaque", "layered_opaque", "transmissive",
         "layered_transmissive", "anything")},
     "shading.program": SHADER,
+    "shading.program.any_hit": ["scene.builtin=foliage", "testers.any_hit=shader"] + SHADER + ["shading.program.any_hit=grey"],
+    "shading.data_cache.bytes": DATA_CACHE,
+    "shading.data_cache.line_bytes": DATA_CACHE + ["shading.data_cache.line_bytes=128"],
+    "shading.translation.page_bytes": DATA_CACHE + ["shading.translation.page_bytes=4096"],
     "shading.program.default": ["shading.program.default=built_in"],
     "shading.cycles_per_any_hit": ["scene.builtin=foliage", "testers.any_hit=shader"],
     "shading.sort": ["shading.lanes=4"],
