@@ -62,6 +62,7 @@ LINES = {
     "serve": ["carousel serve small out --port 18123 --log-level error --log-file serve.log"],
     "schema": [
         "carousel schema config --plugin build/libown_queue.so --log-level error",
+        "carousel schema config --graph drawn.yaml",
         "carousel schema report --markdown --log-file schema.log",
     ],
     "completion": ["source <(carousel completion bash --log-level error --log-file completion.log)"],

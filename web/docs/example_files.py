@@ -43,6 +43,8 @@ def write(program, folder, root):
     (folder / "rays.csv").write_text(RAYS)
     (folder / "small.yaml").write_text("scene: {builtin: cornell}\nimage: {width: 8, height: 8, samples: 1}\n"
                                        "engine: {kind: cycle, what_if: false}\n")
+    (folder / "drawn.yaml").write_text("scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology: {shape: graph, "
+                                       "nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}\n")
     subprocess.run([program, "run", "small.yaml", "--dump-trees", "cornell.trees", "--dump-memory", "requests.csv", "--no-html",
                     "--quiet", "--out", "small"], cwd=folder, check=True)
     (folder / "configs").symlink_to(pathlib.Path(root).resolve() / "configs")
