@@ -40,8 +40,10 @@ Tile::Tile(ResourceId id, Machine& machine, const ShapeMemory& memory, const Til
       room_(id, static_cast<std::uint64_t>(block_rays(settings.resource.collections, settings.resource.packets)),
             resource_, shapes_),
       travelling_(machine, id, settings.link, settings.recording.times),
-      completions_(id, *machine.stores[id.value], settings.testers.contexts > 1 && settings.resource.bundles.size == 0,
-                   settings.link, ports_, travelling_, sink_, recorder_),
+      completions_(
+          id, *machine.stores[id.value],
+          (settings.testers.contexts > 1 || ports_.questions != nullptr) && settings.resource.bundles.size == 0,
+          settings.link, ports_, travelling_, sink_, recorder_),
       retirement_(machine, resource_, logic_, needs_, settings.resource.collections.sort_ids_per_cycle, dispatch_,
                   room_, recorder_),
       any_hit_(settings.link, ports_),

@@ -215,10 +215,6 @@ std::vector<Factor> memory_and_shading() {
       {"shading.lanes", {"1", "4"}, timed},
       {"shading.sort", all<ShadingConfig::Sort>(), timed},
       {"shading.cycles_per_any_hit", {"0", "10"}, {"testers.any_hit=shader"}},
-      {"shading.program.default", {"constant", "built_in"}, timed},
-      {"shading.program.any_hit", {"constant", "built_in"}, {"shading.program.default=built_in"}},
-      {"shading.data_cache.bytes", {"0", "1024"}, {"shading.program.default=built_in"}},
-      {"shading.translation.page_bytes", {"0", "4096"}, {"shading.program.default=built_in"}},
   };
 }
 

@@ -11,8 +11,10 @@ namespace carousel::ringbus::cycle {
 
 /// Hands completed rays over when the last visit that tests them has ended. The results of a visit are known when it
 /// begins, so a ray may seem complete at the end of a visit while an earlier one, in another context, still tests it.
+/// Or an answer to its any-hit calls comes while its last visit has not ended.
 ///
-/// Does nothing unless it is on: with one context no ray is in two visits. Rays of bundles are not followed.
+/// Does nothing unless it is on: with one context no ray is in two visits, and without calls none is completed in one.
+/// Rays of bundles are not followed.
 class RaysInTest {
  public:
   RaysInTest(std::size_t slots, bool on) : visits_(on ? slots : 0) {}

@@ -2,6 +2,7 @@
 #include "ringbus/cycle/shading/programs/data_path.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -49,14 +50,16 @@ class Path {
       Cycle now = std::min(made < reads.size() ? reads[made].at : kNever, path_.next());
       for (const auto& [at, by] : memory.answers) now = std::min(now, at);
       if (now == kNever) return ends;
-      std::erase_if(memory.answers, [&](const auto& answer) {
-        if (answer.first != now) return false;
-        if (answer.second.to == ProgramRead::To::kRegister)
-          ends[answer.second.vector] = now;
+      // An answer may have the path read on.
+      const auto answers = memory.answers;
+      std::erase_if(memory.answers, [now](const auto& answer) { return answer.first == now; });
+      for (const auto& [at, by] : answers) {
+        if (at != now) continue;
+        if (by.to == ProgramRead::To::kRegister)
+          ends[by.vector] = now;
         else
-          path_.take(answer.second, now);
-        return true;
-      });
+          path_.take(by, now);
+      }
       for (; made < reads.size() && reads[made].at == now; ++made)
         path_.read(reads[made].what, {64 * reads[made].line, 64}, {.vector = static_cast<std::uint32_t>(made)}, now);
       path_.step(now, [&](const ProgramRead& by) { ends[by.vector] = now; });
