@@ -1,9 +1,11 @@
 #include "ringbus/verdict/bottleneck_search.h"
 
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +15,7 @@
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
+#include "ringbus/verdict/search_choices.h"
 #include "ringbus/verdict/steady_state.h"
 #include "ringbus/verdict/what_if.h"
 
@@ -38,52 +41,50 @@ class Search {
   }
 
   Bottleneck search() {
-    const std::uint64_t frame = run_.result.rays_completed;
-    const std::uint64_t first = frame / kScreening;
-    const std::vector<std::vector<std::size_t>> groups = grouped();
-    out_.paths = pilot_paths(config_, run_.paths, frame, first / (groups.size() + 1));
+    const std::vector<std::vector<std::size_t>> groups = search_groups(what_ifs_, *run_.result.cycle);
+    out_.paths = pilot_paths(config_, run_.paths, frame(),
+                             share(kScreening, groups.size() + 1 + static_cast<std::size_t>(noise_seeds_)));
     begin("first pilot", groups.size());
     screen(groups);
-    if (!out_.whole && out_.complete) find_noise();
+    const bool whole = out_.whole;
+    if (!whole && out_.complete) find_noise();
     note_phases();
-    std::vector<std::size_t> worth = worth_a_second_look();
-    const std::uint64_t larger =
-        pilot_paths(config_, run_.paths, frame, (frame - std::min(frame, first)) / (worth.size() + 1));
-    if (out_.complete) estimate(worth);
-    if (!out_.whole && larger > out_.paths + out_.paths / 2) {
-      out_.paths = larger;
-      begin("second pilot", worth.size());
+    for (int larger = 0; out_.complete && !out_.whole && !(told() || larger == kLargerPilots); ++larger) {
+      std::vector<std::size_t> worth = worth_a_second_look(out_.gains, likeness_.other_cycles ? kFewest : kContenders);
+      const std::uint64_t paths = next_paths(worth);
+      if (paths == 0) break;
+      out_.paths = paths;
+      begin(larger == 0 ? "second pilot" : "larger pilot", worth.size());
       simulate_base();
+      if (!out_.complete) break;
+      relax_contenders(worth);
     }
-    for (int doubled = 0; out_.complete; ++doubled) {
-      const bool alike = judge();
-      if (alike) {
-        relax_contenders(worth);
-        worth = perhaps_noise();
-        if (worth.empty()) break;
-      }
-      if (doubled == kDoublings) {
-        if (alike) break;
-        return without_gains();
-      }
-      out_.paths = std::min(run_.paths, 2 * out_.paths);
-      // Half as many classes, so that a larger pilot takes no longer.
-      worth.resize(std::min(worth.size(), std::max(kFewest, worth.size() / 2)));
-      begin("larger pilot", worth.size());
-      simulate_base();
-    }
-    if (out_.whole && out_.complete) replicate();
-    if (!out_.complete) return without_gains();
+    if (out_.complete) judge();
+    if (whole && out_.complete) replicate();
+    if (!out_.complete || !out_.unlike.empty()) return without_gains();
     std::stable_sort(out_.gains.begin(), out_.gains.end(),
                      [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
     return out_;
   }
 
  private:
-  static constexpr int kDoublings = 2;
-  static constexpr std::size_t kFewest = 2;
-  static constexpr std::uint64_t kScreening = 3;  // a third of the rays go to the first pilot
-  static constexpr double kEnough = 0.03;         // a gain that is worth a second look
+  static constexpr int kLargerPilots = 2;
+  static constexpr double kScreening = 0.4;  // of the run's rays, that the first pilot is to take
+  static constexpr double kWanted = 0.9;     // that all pilots are to take
+  static constexpr double kAtMost = 2.5;     // that they may take to tell the greatest gain from noise
+
+  std::uint64_t frame() const { return run_.result.rays_completed; }
+
+  /// Rays of each of so many simulations that take this part of the run's rays together.
+  std::uint64_t share(double part, std::size_t simulations) const {
+    return static_cast<std::uint64_t>(std::max(0.0, part) * static_cast<double>(frame()) /
+                                      static_cast<double>(simulations));
+  }
+
+  /// The part of the run's rays that a search of this extent has left.
+  double left_of(double part) const {
+    return part - static_cast<double>(out_.simulated) / static_cast<double>(frame());
+  }
 
   Bottleneck without_gains() {
     out_.gains.clear();
@@ -112,6 +113,7 @@ class Search {
   void set_base(RunResult base) {
     base_ = std::move(base);
     out_.rays = base_.rays_completed;
+    if (out_.complete && !stops_) likeness_ = likeness(foretelling(), *run_.result.cycle);
   }
 
   void simulate_base() {
@@ -119,35 +121,10 @@ class Search {
   }
 
   Foretelling foretelling() const {
-    return {{&*base_.cycle, base_.rays_completed}, run_.result.rays_completed, 2 * fill_rays(slots_of(config_))};
-  }
-
-  /// By how much the run differs from what the pilot foretells, as a fraction.
-  double deviation() const {
-    return stops_ ? 0 : static_cast<double>(run_.result.cycle->cycles) / foretelling().cycles().value - 1;
-  }
-
-  /// True if the parts of a class had nothing to do for more than half of the run.
-  bool idle(const std::string& name) const {
-    constexpr double kIdle = 0.5;
-    const cycle::CycleResult& run = *run_.result.cycle;
-    for (const cycle::ClassUse& use : run.uses)
-      if (use.name == name) return static_cast<double>(use.busy) <= kIdle * use.parts * static_cast<double>(run.cycles);
-    return false;
-  }
-
-  /// All classes, those of idle parts in one group.
-  std::vector<std::vector<std::size_t>> grouped() const {
-    std::vector<std::vector<std::size_t>> out;
-    std::vector<std::size_t> of_idle;
-    for (std::size_t i = 0; i < what_ifs_.size(); ++i) {
-      if (idle(what_ifs_[i].name()))
-        of_idle.push_back(i);
-      else
-        out.push_back({i});
-    }
-    if (!of_idle.empty()) out.push_back(of_idle);
-    return out;
+    return {{&*base_.cycle, base_.rays_completed},
+            frame(),
+            2 * fill_rays(slots_of(config_)),
+            stops_ ? nullptr : &*run_.result.cycle};
   }
 
   /// Simulates the pilot as configured and with the classes of each group relaxed together; then parts of the groups
@@ -178,16 +155,26 @@ class Search {
         results.erase(results.begin());
         have_base = true;
       }
+      std::vector<std::pair<std::vector<std::size_t>, Estimate>> several;
       for (std::size_t k = 0; k < tried.size(); ++k) {
         const bool warms =
             std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return what_ifs_[i].part.how.keeps_shapes; });
-        const Estimate gain = foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0, warms);
-        if (tried[k].size() == 1) relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
-        // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
-        if (tried[k].size() == 1 || gain.value < kEnough)
-          for (const std::size_t i : tried[k]) note(i, gain, tried[k].size());
+        const Estimate gain =
+            foretelling().gain({&*results[k].cycle, results[k].rays_completed}, likeness_.off(), warms);
+        if (tried[k].size() > 1) {
+          several.emplace_back(std::move(tried[k]), gain);
+          continue;
+        }
+        relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
+        note(tried[k].front(), gain, 1);
+      }
+      // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
+      const double enough = std::max(kEnough, surely(out_.gains));
+      for (const auto& [group, gain] : several) {
+        if (gain.value < kEnough || gain.high < enough)
+          for (const std::size_t i : group) note(i, gain, group.size());
         else
-          halve(tried[k], parts);
+          halve(group, parts);
       }
       groups = std::move(parts);
     }
@@ -240,7 +227,8 @@ class Search {
     for (const std::size_t i : classes) {
       const RunResult& result = relaxed_[i].result;
       note(i,
-           foretelling().gain({&*result.cycle, result.rays_completed}, deviation(), what_ifs_[i].part.how.keeps_shapes),
+           foretelling().gain({&*result.cycle, result.rays_completed}, likeness_.off(),
+                              what_ifs_[i].part.how.keeps_shapes),
            1);
     }
   }
@@ -264,26 +252,25 @@ class Search {
       if (relaxed_[i].paths != out_.paths) pilots_.leave_out_one();
   }
 
-  /// The classes that the larger pilot simulates: those that might gain enough to be named, but not many.
-  std::vector<std::size_t> worth_a_second_look() const {
-    constexpr std::size_t kMost = 6;
-    std::vector<std::size_t> out;
-    for (std::size_t i = 0; i < out_.gains.size(); ++i)
-      if (out_.gains[i].together == 1 && (out_.whole || out_.gains[i].high >= kEnough)) out.push_back(i);
-    greatest_first(out);
-    if (!out_.whole && out.size() > kMost) out.resize(kMost);
-    return out;
-  }
+  /// True if a larger pilot has nothing to add: it is sure which class to name, and the pilot is like the run, or the
+  /// class stands out in spite of the difference.
+  bool told() { return judge() && sure(out_.gains); }
 
-  /// The classes that may gain enough, the greatest gain first, if that one may be noise; else none. A larger pilot
-  /// tells it from noise.
-  std::vector<std::size_t> perhaps_noise() const {
-    std::vector<std::size_t> out;
-    for (std::size_t i = 0; i < out_.gains.size() && !out_.whole; ++i)
-      if (out_.gains[i].together == 1 && out_.gains[i].gain >= kWorthIt) out.push_back(i);
-    greatest_first(out);
-    if (out.empty() || worth_naming(out_.gains[out.front()].gain, out_.gains[out.front()].low)) return {};
-    return out;
+  /// Paths of the next pilot, which is to relax these classes; 0 if what it takes is not worth it. Twice as many if the
+  /// present one is not like the run, whatever that takes.
+  std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
+    const std::uint64_t twice = std::min(run_.paths, 2 * out_.paths);
+    if (!out_.unlike.empty()) return twice;
+    if (worth.empty()) return 0;
+    const std::uint64_t wanted = pilot_paths(config_, run_.paths, frame(), share(left_of(kWanted), worth.size() + 1));
+    if (left_of(kWanted) > 0 && wanted >= out_.paths + out_.paths / 2) return wanted;
+    const Gain& best = out_.gains[worth.front()];
+    if (best.gain < kWorthIt || worth_naming(best.gain, best.low)) return 0;
+    // The greatest gain may be noise.
+    worth.resize(std::min(worth.size(), kFewest));
+    const double takes =
+        static_cast<double>(worth.size() + 1) * static_cast<double>(twice) / static_cast<double>(run_.paths);
+    return takes <= left_of(kAtMost) ? twice : 0;
   }
 
   /// Notes the noise of the cycles by the present pilot's, with the run's seed and with others.
@@ -315,7 +302,7 @@ class Search {
     std::vector<std::size_t> named;
     for (std::size_t i = 0; i < out_.gains.size(); ++i)
       if (worth_naming(out_.gains[i].gain, out_.gains[i].low)) named.push_back(i);
-    greatest_first(named);
+    greatest_first(out_.gains, named);
     named.resize(std::min(named.size(), kMost));
     const std::uint64_t replicates = named.empty() ? 0 : kReplicates;
     std::deque<Config> machines;
@@ -344,23 +331,19 @@ class Search {
     if (noise_seeds_ > 0) note_noise(std::move(cycles));
   }
 
-  void greatest_first(std::vector<std::size_t>& classes) const {
-    std::stable_sort(classes.begin(), classes.end(),
-                     [&](std::size_t a, std::size_t b) { return out_.gains[a].gain > out_.gains[b].gain; });
-  }
-
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
-  /// are alike.
+  /// are alike, or if a class is worth naming in spite of the difference, which widens its interval, unless the cycles
+  /// differ by much.
   bool judge() {
-    const Foretelling foretold = foretelling();
-    const Estimate cycles = foretold.cycles();
+    constexpr double kMuch = 0.15;
+    const Estimate cycles = foretelling().cycles();
     out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
-    out_.unlike.clear();
     const double ran = stops_ ? cycles.value : static_cast<double>(run_.result.cycle->cycles);
-    out_.rays_per_kilocycle = rays_per_kilocycle(run_.result.rays_completed, ran);
-    if (stops_) return true;
-    out_.deviation = deviation();
-    out_.unlike = unlikeness(foretold, *run_.result.cycle);
+    out_.rays_per_kilocycle = rays_per_kilocycle(frame(), ran);
+    out_.deviation = likeness_.deviation;
+    out_.unlike =
+        likeness_.veto([this](std::string_view part) { return matters(out_.gains, *run_.result.cycle, part); });
+    if (std::abs(likeness_.deviation) <= kMuch && named_gain(out_.gains)) out_.unlike.clear();
     return out_.unlike.empty();
   }
 
@@ -379,6 +362,7 @@ class Search {
   std::vector<WhatIf> what_ifs_;
   std::map<std::size_t, Relaxed> relaxed_;  // by index of what_ifs_
   RunResult base_;
+  Likeness likeness_;  // of the present pilot; a run in which a resource stops is not compared
   Bottleneck out_;
 };
 

@@ -33,16 +33,16 @@ struct GainPhase {
 
 /// The bottleneck of a machine, found by simulating it with each class relaxed in turn.
 struct Bottleneck {
-  bool complete = true;  ///< false: interrupted; there are no gains
-  std::string unlike;    ///< how the pilot differs from the run; empty if it is like it; else there are no gains
-  double rays_per_kilocycle = 0;    ///< throughput of the machine as configured, over the whole frame
-  std::uint64_t paths = 0;          ///< paths of the pilot
-  std::uint64_t rays = 0;           ///< rays of the pilot, simulated for each class
-  std::uint64_t simulated = 0;      ///< rays of all simulations of the search
-  bool whole = false;               ///< the pilot is the whole frame
-  std::uint64_t replicates = 0;     ///< other seeds with which the whole frame was simulated
-  double deviation = 0;             ///< distance of the run's cycles from those that the pilot foretells, as a fraction
-  double uncertainty = 0;           ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
+  bool complete = true;           ///< false: interrupted; there are no gains
+  std::string unlike;             ///< why no gain is told of a pilot that differs from the run; empty if gains are told
+  double rays_per_kilocycle = 0;  ///< throughput of the machine as configured, over the whole frame
+  std::uint64_t paths = 0;        ///< paths of the pilot
+  std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
+  std::uint64_t simulated = 0;    ///< rays of all simulations of the search
+  bool whole = false;             ///< the pilot is the whole frame
+  std::uint64_t replicates = 0;   ///< other seeds with which the whole frame was simulated
+  double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
+  double uncertainty = 0;         ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
   std::optional<CycleNoise> noise;  ///< of the run's cycles; absent if a resource stops
   std::uint64_t noise_paths = 0;    ///< paths of each simulation that it was found with
   std::vector<Gain> gains;          ///< greatest first
@@ -52,14 +52,13 @@ struct Bottleneck {
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
 /// frame (foretell.h). A resource that stops is left out of account.
 ///
-/// The classes of parts that the run kept busy for less than half of its time are relaxed together; only where that
-/// gains enough to matter they are told apart, by halves. This and each other class by itself is simulated for a first,
-/// small pilot; the classes that may be worth naming, at most six, for a second, larger one, the most promising first:
-/// those that surely gain less than another are left out. These pilots have together at most about as many rays as the
-/// run, but each has as many as the machine needs to be seen between fill and drain; where that is most of the frame,
-/// the pilot is the frame. The last pilot is compared with the run. If it is not like it, or if no class can be named
-/// since each gain may be noise, it is doubled, twice at most, for half of the classes. A pilot that is still not like
-/// the run finds out nothing.
+/// The classes of parts that the run kept busy for less than half of its time are relaxed together, and so are those
+/// that others wait for (search_choices.h); only where that may gain more than what is known already they are told
+/// apart, by halves. This and each other class by itself is simulated for a first, small pilot. If it is sure then
+/// which class to name, the search ends. Else those that may be worth naming, at most six, are simulated for a larger
+/// one, the most promising first, as far as the pilots have then together about as many rays as the run. A pilot that
+/// is not like the run is doubled, twice at most, whatever that takes, unless a class is worth naming in spite of the
+/// difference, which widens the intervals; where it is not, nothing is found out.
 ///
 /// Of a whole frame the classes that may be named are simulated with two other seeds of the picture besides, and their
 /// intervals widened to hold what they gain there. The machine as configured is simulated with run.noise_seeds other

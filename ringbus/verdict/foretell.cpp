@@ -10,87 +10,172 @@ namespace carousel::ringbus {
 
 namespace {
 
+using cycle::CycleResult;
+using cycle::ProgressSample;
+
 std::uint64_t drain_begins(const PilotRun& run) {
   return run.result->all_begun ? run.result->all_begun->completed : run.rays;
 }
 
+/// The classes of parts whose busy time counts tests: those of box and triangle units that did any.
+std::vector<std::size_t> testers(const CycleResult& result) {
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < result.uses.size(); ++i)
+    if ((result.uses[i].name == "box_tests" || result.uses[i].name == "triangle_tests") && result.uses[i].busy > 0)
+      out.push_back(i);
+  return out;
+}
+
+template <class Value>
+std::vector<double> means(const CycleResult& result, const std::vector<double>& places, double begin, double end,
+                          const Value& value) {
+  const auto place = [&](std::size_t i) { return places[i]; };
+  return means_of_looks([&](std::uint64_t look) {
+    return at_place(result, place, begin + (end - begin) * (2 * static_cast<double>(look) + 1) / (2.0 * kAllLooks),
+                    value);
+  });
+}
+
+/// By how much longer the base takes from each block to the next than the other machine, scaled to the same sum, as a
+/// fraction of the other's time.
+std::vector<double> differences(const std::vector<double>& base, const std::vector<double>& other) {
+  const double all = std::max(1.0, other.back() - other.front()), ratio = (base.back() - base.front()) / all;
+  std::vector<double> d;
+  for (std::size_t i = 0; i < base.size(); ++i) d.push_back((base[i] - ratio * other[i]) / all);
+  return steps(d);
+}
+
 }  // namespace
 
-Foretelling::Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill)
-    : base_(base), frame_rays_(frame_rays), fill_(std::min(fill, base.rays / 4)) {}
+Foretelling::Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill, const CycleResult* frame)
+    : base_(base),
+      frame_rays_(frame_rays),
+      fill_(std::min(fill, base.rays / 4)),
+      frame_size_(static_cast<double>(frame_rays)),
+      base_places_(places(base_)) {
+  if (frame != nullptr && !whole()) count_tests(*frame);
+}
 
-Foretelling::Window Foretelling::window(PilotRun other) const {
-  const std::uint64_t end = std::min(drain_begins(base_), drain_begins(other));
+/// Counts tests from now on if the time of a test varies less than that of a ray.
+void Foretelling::count_tests(const CycleResult& frame) {
+  double times = 0;
+  const std::vector<std::size_t> classes = testers(*base_.result);
+  for (const std::size_t i : classes)
+    times += static_cast<double>(frame.uses[i].busy) / static_cast<double>(base_.result->uses[i].busy) /
+             static_cast<double>(classes.size());
+  const double of_pilot = static_cast<double>(base_.rays);
+  if (times <= 1) return;
+  const double rays_vary = unsteadiness();
+  by_tests_ = true;
+  base_places_ = places(base_);
+  if (unsteadiness() < rays_vary) {
+    frame_size_ = times * of_pilot;
+    by_rays_ = std::make_shared<Foretelling>(base_, frame_rays_, fill_);
+    return;
+  }
+  by_tests_ = false;
+  base_places_ = places(base_);
+}
+
+/// The relative error of the time between fill and drain, from the differences between neighbouring blocks.
+double Foretelling::unsteadiness() const {
+  const Window w = window(base_, base_places_);
+  const std::vector<double> times = means(*base_.result, base_places_, w.begin, w.end, cycle_of);
+  return standard_error(steps(times)) / std::max(1.0, times.back() - times.front());
+}
+
+Foretelling::Places Foretelling::places(const PilotRun& run) const {
+  const std::vector<std::size_t> classes = by_tests_ ? testers(*run.result) : std::vector<std::size_t>{};
+  const double each = static_cast<double>(run.rays) / static_cast<double>(std::max<std::size_t>(1, classes.size()));
+  Places out;
+  for (const ProgressSample& sample : run.result->progress) {
+    double done = classes.empty() ? static_cast<double>(sample.completed) : 0;
+    for (const std::size_t i : classes)
+      done += each * static_cast<double>(sample.busy[i]) / static_cast<double>(run.result->uses[i].busy);
+    out.push_back(done);
+  }
+  return out;
+}
+
+double Foretelling::place_of_count(const PilotRun& run, const Places& places, std::uint64_t completed) const {
+  if (!by_tests_) return static_cast<double>(completed);
+  const CycleResult& result = *run.result;
+  return at_count(result, completed, [&](const ProgressSample& s) {
+    return places[static_cast<std::size_t>(&s - result.progress.data())];
+  });
+}
+
+Foretelling::Window Foretelling::window(const PilotRun& other, const Places& places) const {
+  const double begin = std::max(place_of_count(base_, base_places_, fill_), place_of_count(other, places, fill_)),
+               end = std::min(place_of_count(base_, base_places_, drain_begins(base_)),
+                              place_of_count(other, places, drain_begins(other)));
   // A pilot that is never between fill and drain can only be taken as a whole.
-  if (end < fill_ + base_.rays / 4) return {0, base_.rays};
-  return {fill_, end};
+  const double rays = static_cast<double>(base_.rays);
+  if (end < begin + std::floor(rays / 4)) return {0, rays};
+  return {begin, end};
 }
 
-double Foretelling::per_ray(const cycle::CycleResult& result, Window window) {
-  const std::vector<double> means = block_means(result, window.begin, window.end, cycle_of);
-  return (means.back() - means.front()) /
-         (static_cast<double>(window.rays()) * (kProgressBlocks - 1) / kProgressBlocks);
-}
-
-double Foretelling::frame_cycles(PilotRun run, Window window) const {
-  const double all = static_cast<double>(run.result->cycles);
+double Foretelling::frame_cycles(const PilotRun& run, const Places& places, Window window) const {
+  const double all = static_cast<double>(run.result->cycles), rays = static_cast<double>(run.rays);
   if (whole()) return all;
-  const double each = window.rays() >= run.rays ? all / static_cast<double>(run.rays) : per_ray(*run.result, window);
-  return all + static_cast<double>(frame_rays_ - run.rays) * each;
+  double each = all / rays;
+  if (window.size() < rays) {
+    const std::vector<double> times = means(*run.result, places, window.begin, window.end, cycle_of);
+    each = (times.back() - times.front()) / (window.size() * (kProgressBlocks - 1) / kProgressBlocks);
+  }
+  return all + (frame_size_ - rays) * each;
 }
 
 Estimate Foretelling::cycles() const {
-  const Window w = window(base_);
-  const double value = frame_cycles(base_, w);
+  const double value = frame_cycles(base_, base_places_, window(base_, base_places_));
   if (whole()) return {value, value, value};
-  const std::vector<double> means = block_means(*base_.result, w.begin, w.end, cycle_of);
-  const double error = 2 * standard_error(steps(means)) / std::max(1.0, means.back() - means.front()) * value;
+  const double error = 2 * unsteadiness() * value;
   return {value, value - error, value + error};
 }
 
 std::vector<double> Foretelling::busy() const {
   std::vector<double> out;
-  const Window w = window(base_);
-  const cycle::CycleResult& result = *base_.result;
+  const Window w = window(base_, base_places_);
+  const CycleResult& result = *base_.result;
+  const auto place = [this](std::size_t i) { return base_places_[i]; };
   for (std::size_t i = 0; i < result.uses.size(); ++i) {
-    const auto value = [i](const cycle::ProgressSample& s) { return static_cast<double>(s.busy[i]); };
+    const auto value = [i](const ProgressSample& s) { return static_cast<double>(s.busy[i]); };
     double all = static_cast<double>(result.uses[i].busy);
     if (!whole())
-      all += static_cast<double>(frame_rays_ - base_.rays) *
-             (at_count(result, w.end, value) - at_count(result, w.begin, value)) / static_cast<double>(w.rays());
+      all += (frame_size_ - static_cast<double>(base_.rays)) *
+             (at_place(result, place, w.end, value) - at_place(result, place, w.begin, value)) / w.size();
     out.push_back(all);
   }
   return out;
 }
 
-/// By how much longer the base takes from each block to the next than the other machine, scaled to the same sum, as a
-/// fraction of the other's time.
-std::vector<double> Foretelling::differences(PilotRun other, Window window) const {
-  const std::vector<double> base = block_means(*base_.result, window.begin, window.end, cycle_of),
-                            rest = block_means(*other.result, window.begin, window.end, cycle_of);
-  const double all = std::max(1.0, rest.back() - rest.front()), ratio = (base.back() - base.front()) / all;
-  std::vector<double> d;
-  for (std::size_t i = 0; i < kProgressBlocks; ++i) d.push_back((base[i] - ratio * rest[i]) / all);
-  return steps(d);
-}
-
 Estimate Foretelling::gain(PilotRun relaxed, double deviation, bool warms) const {
-  const auto gain_by = [&](Window w) { return frame_cycles(base_, w) / frame_cycles(relaxed, w) - 1; };
-  Window w = window(relaxed);
-  std::vector<double> d = differences(relaxed, w);
+  const Places there = places(relaxed);
+  const auto gain_by = [&](Window w) {
+    return frame_cycles(base_, base_places_, w) / frame_cycles(relaxed, there, w) - 1;
+  };
+  const auto differences_in = [&](Window w) {
+    return differences(means(*base_.result, base_places_, w.begin, w.end, cycle_of),
+                       means(*relaxed.result, there, w.begin, w.end, cycle_of));
+  };
+  Window w = window(relaxed, there);
+  std::vector<double> d = differences_in(w);
   double still = 0;  // that it may yet gain
   const auto middle = d.begin() + static_cast<std::ptrdiff_t>(d.size() / 2);
   if (const double grown = std::accumulate(middle, d.end(), 0.0) - std::accumulate(d.begin(), middle, 0.0);
       warms && !whole() && grown > 2 * standard_error(d)) {
-    const Window earlier{w.begin, w.begin + w.rays() / 2};
+    const Window earlier{w.begin, w.begin + w.size() / 2};
     w.begin = earlier.end;
     still = std::max(0.0, gain_by(w) - gain_by(earlier));
-    d = differences(relaxed, w);
+    d = differences_in(w);
   }
-  const double gain = gain_by(w), of_frame = static_cast<double>(w.rays()) / static_cast<double>(frame_rays_),
+  const double gain = gain_by(w), of_frame = w.size() / frame_size_,
                off = whole() ? 0 : std::abs(deviation) * (1 + gain) * (1 + gain) / 2,
                half = 2 * standard_error(d) * std::sqrt(1 + of_frame) + off;
-  return {gain, gain - half, gain + half + still};
+  const Estimate own{gain, gain - half, gain + half + still};
+  if (by_rays_ == nullptr) return own;
+  const Estimate by_rays = by_rays_->gain(relaxed, deviation, warms);
+  return by_rays.high - by_rays.low < own.high - own.low ? by_rays : own;
 }
 
 }  // namespace carousel::ringbus

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "ringbus/results/cycle_result.h"
@@ -14,6 +15,10 @@ namespace carousel::ringbus {
 //   frame = T + (frame's rays - pilot's rays) m.
 // The rays of a machine and of a relaxed one are the same, and m is taken between the same counts of completed rays in
 // both, so that the mix of rays is too. A pilot that is the whole frame needs no extrapolation.
+//
+// Dear rays are completed late, and a pilot's may be dearer than the frame's. Where the time of a test varies less from
+// block to block than that of a ray, tests are counted instead of rays: those that were done so far, box and triangle
+// tests with equal weight, in units of the pilot's tests a ray. The frame's tests are known from its run.
 
 /// A machine's run over a pilot's rays, or over all of them.
 struct PilotRun {
@@ -29,8 +34,11 @@ struct Estimate {
 class Foretelling {
  public:
   /// `frame_rays`: rays of the whole frame. `fill`: completed rays after which every machine that is compared is full.
-  Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill);
+  /// `frame`: the frame's run on the pilot's machine; null: tests are not counted.
+  Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill, const cycle::CycleResult* frame = nullptr);
 
+  /// Tests are counted, and not rays.
+  bool by_tests() const { return by_tests_; }
   /// The frame's cycles on the pilot's machine. The interval is that of the differences between neighbouring parts of
   /// the pilot; of a whole frame, whose cycles are known, none.
   Estimate cycles() const;
@@ -50,21 +58,32 @@ class Foretelling {
   /// `warms`: the relaxed machine has more room for shapes, and may go on filling it after it is full of rays. If the
   /// later half of the pilot gains surely more than the earlier one, it stands for the frame's further rays, and the
   /// interval's upper end is as much farther up as these halves differ, since it may not be warm yet.
+  ///
+  /// Where tests are counted, rays are tried as well, and the narrower interval counts: the relaxed class may not test.
   Estimate gain(PilotRun relaxed, double deviation, bool warms = false) const;
 
  private:
   struct Window {
-    std::uint64_t begin = 0, end = 0;  // completed rays
-    std::uint64_t rays() const { return end - begin; }
+    double begin = 0, end = 0;  // rays, or tests in units of as many as a ray of the pilot has
+    double size() const { return end - begin; }
   };
+  /// How far a run had come at each sample, in the unit of windows.
+  using Places = std::vector<double>;
+
   bool whole() const { return base_.rays >= frame_rays_; }
-  Window window(PilotRun other) const;
-  static double per_ray(const cycle::CycleResult& result, Window window);
-  double frame_cycles(PilotRun run, Window window) const;
-  std::vector<double> differences(PilotRun other, Window window) const;
+  Places places(const PilotRun& run) const;
+  double place_of_count(const PilotRun& run, const Places& places, std::uint64_t completed) const;
+  Window window(const PilotRun& other, const Places& places) const;
+  double frame_cycles(const PilotRun& run, const Places& places, Window window) const;
+  double unsteadiness() const;
+  void count_tests(const cycle::CycleResult& frame);
 
   PilotRun base_;
   std::uint64_t frame_rays_, fill_;
+  bool by_tests_ = false;
+  double frame_size_;  // in the unit of windows
+  Places base_places_;
+  std::shared_ptr<const Foretelling> by_rays_;  // only where tests are counted
 };
 
 }  // namespace carousel::ringbus

@@ -16,8 +16,8 @@ std::uint64_t slots_of(const Config& config) {
 }
 
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
-  // Three times the rays that fill a machine with twice the slots: most of the pilot is then between fill and drain.
-  constexpr std::uint64_t kFills = 3, kLeastRays = 3000, kMostFills = 32, kMostRays = 80'000;
+  // Twice the rays that fill a machine with twice the slots: half of the pilot is then between fill and drain.
+  constexpr std::uint64_t kFills = 2, kLeastRays = 1500, kMostFills = 32, kMostRays = 80'000;
   const std::uint64_t fill = 2 * fill_rays(slots_of(config));
   const double rays_each =
       static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -15,35 +14,56 @@ namespace carousel::ringbus {
 
 inline constexpr std::size_t kProgressBlocks = 16;
 
-/// The value at which `completed` rays had been completed, between samples by a straight line; `value` takes a sample.
-template <class Value>
-double at_count(const cycle::CycleResult& result, std::uint64_t completed, const Value& value) {
+/// The value at a place of a run's progress, between samples by a straight line. `places`: that of each sample,
+/// ascending; `value` takes a sample.
+template <class Places, class Value>
+double at_place(const cycle::CycleResult& result, const Places& places, double place, const Value& value) {
   const std::vector<cycle::ProgressSample>& all = result.progress;
-  const auto after = std::find_if(all.begin(), all.end(), [&](const auto& s) { return s.completed >= completed; });
-  if (after == all.end()) return all.empty() ? 0 : value(all.back());
-  const double reached = value(*after);
-  if (after == all.begin()) return reached;
-  const cycle::ProgressSample& before = *(after - 1);
-  const double part =
-      static_cast<double>(completed - before.completed) / static_cast<double>(after->completed - before.completed);
-  return value(before) + part * (reached - value(before));
+  if (all.empty()) return 0;
+  std::size_t after = 0;
+  for (std::size_t end = all.size(); after < end;) {
+    const std::size_t middle = after + (end - after) / 2;
+    if (places(middle) < place)
+      after = middle + 1;
+    else
+      end = middle;
+  }
+  if (after == all.size()) return value(all.back());
+  const double reached = value(all[after]);
+  if (after == 0) return reached;
+  const double before = value(all[after - 1]), begin = places(after - 1);
+  return before + (place - begin) / (places(after) - begin) * (reached - before);
 }
 
-/// The mean of a value in each of the blocks of equal numbers of rays that those from `begin` to `end` are cut into.
-/// Times at which two schedules complete the same number of rays differ by chance; their means differ less.
+/// The value at which `completed` rays had been completed.
 template <class Value>
-std::vector<double> block_means(const cycle::CycleResult& result, std::uint64_t begin, std::uint64_t end,
-                                const Value& value) {
-  constexpr std::uint64_t kLooks = 16;
+double at_count(const cycle::CycleResult& result, std::uint64_t completed, const Value& value) {
+  const auto places = [&](std::size_t i) { return static_cast<double>(result.progress[i].completed); };
+  return at_place(result, places, static_cast<double>(completed), value);
+}
+
+inline constexpr std::uint64_t kLooks = 16, kAllLooks = kProgressBlocks * kLooks;
+
+/// The means of blocks over what `look` finds at each of kAllLooks places. Times at which two schedules complete the
+/// same number of rays differ by chance; their means differ less.
+template <class Look>
+std::vector<double> means_of_looks(const Look& look) {
   std::vector<double> out;
-  for (std::size_t block = 0; block < kProgressBlocks; ++block) {
+  for (std::uint64_t block = 0; block < kProgressBlocks; ++block) {
     double sum = 0;
-    for (std::uint64_t look = 0; look < kLooks; ++look)
-      sum += at_count(
-          result, begin + (end - begin) * (2 * (block * kLooks + look) + 1) / (2 * kProgressBlocks * kLooks), value);
+    for (std::uint64_t i = 0; i < kLooks; ++i) sum += look(block * kLooks + i);
     out.push_back(sum / static_cast<double>(kLooks));
   }
   return out;
+}
+
+/// The mean of a value in each of the blocks of equal numbers of rays that those from `begin` to `end` are cut into.
+template <class Value>
+std::vector<double> block_means(const cycle::CycleResult& result, std::uint64_t begin, std::uint64_t end,
+                                const Value& value) {
+  return means_of_looks([&](std::uint64_t look) {
+    return at_count(result, begin + (end - begin) * (2 * look + 1) / (2 * kAllLooks), value);
+  });
 }
 
 inline double cycle_of(const cycle::ProgressSample& sample) {

@@ -39,7 +39,8 @@ PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_
                       std::uint64_t draw) {
   constexpr std::uint64_t kEnoughTiles = 128, kLeastPlaces = 16, kPixels = PixelOrder::kTile * PixelOrder::kTile;
   const std::uint64_t places = std::max(kLeastPlaces, paths / std::max<std::uint64_t>(1, together));
-  const std::uint64_t each = std::clamp<std::uint64_t>(paths / kPixels / kEnoughTiles, 1, order.samples());
+  const std::uint64_t each =
+      std::clamp<std::uint64_t>(std::max(paths / kPixels / kEnoughTiles, together / kPixels), 1, order.samples());
   return draw_places(order, paths, places, each, seed, draw);
 }
 

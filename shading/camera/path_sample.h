@@ -31,8 +31,8 @@ class PathSample {
 /// that are neighbours are drawn at random by `seed` and `draw`: 16 places, or more if each of them can have `together`
 /// paths then. Neighbours bring the same shapes into the caches and fill the same collections, as in the frame; and the
 /// more places there are, the more surely their mix is the frame's. A tile's first samples are taken, as many as leave
-/// 128 tiles or more, or all. The rectangles follow one another row by row, so that the upper part of the picture comes
-/// before the lower, as in the frame.
+/// 128 tiles or more, or as make `together` paths of one tile, or all. The rectangles follow one another row by row, so
+/// that the upper part of the picture comes before the lower, as in the frame.
 PathSample draw_tiles(const PixelOrder& order, std::uint64_t paths, std::uint64_t together, std::uint64_t seed,
                       std::uint64_t draw = 0);
 

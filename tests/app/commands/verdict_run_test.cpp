@@ -63,7 +63,7 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
   EXPECT_LT(named["gain"], named["high"]);
   const Json& noise = report["cycle_noise"];
   EXPECT_FALSE(noise["whole_frame"]);
-  EXPECT_LT(noise["fraction"], 0.1);
+  EXPECT_LT(noise["fraction"], 0.15);
   const Json other = run(kTerrain, {"image.seed=77"});
   EXPECT_GE(other["engine"]["cycles"], noise["low"]) << noise.dump();
   EXPECT_LE(other["engine"]["cycles"], noise["high"]) << noise.dump();
@@ -78,9 +78,8 @@ TEST_F(VerdictRun, TheLastFrameOfASeriesIsSearchedWithItsWarmCaches) {
                                      "memory.shape_buffer_kib=4", "memory.dram_latency_cycles=4000"});
   const Json& rows = report["frames"]["rows"];
   ASSERT_GT(rows[0]["cycles"].get<double>(), 1.5 * rows[1]["cycles"].get<double>()) << rows.dump(1);
-  ASSERT_TRUE(report["bottleneck"]["whole_frame"]) << report["bottleneck"].dump(1);
+  ASSERT_FALSE(report["bottleneck"]["gains"].empty()) << report["bottleneck"].dump(1);
   for (const Json& gain : report["bottleneck"]["gains"]) EXPECT_GT(gain["gain"], -0.1) << gain.dump();
-  EXPECT_TRUE(report["cycle_noise"]["whole_frame"]);
   EXPECT_LT(report["cycle_noise"]["fraction"], 0.3);
 }
 
@@ -119,7 +118,7 @@ TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
 // Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are
 // read again and again, as in a frame of any size. Where tests limit the same frame, its first reads do not matter.
 TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
-  const std::vector<std::string> frame{"engine.what_if=true", "image.width=64", "image.height=48",
+  const std::vector<std::string> frame{"engine.what_if=true", "image.width=40", "image.height=30",
                                        "memory.l2_kib=4096"};
   std::vector<std::string> slow = frame;
   for (const char* set : {"memory.dram_bytes_per_cycle=1", "memory.shape_buffer_kib=4", "testers.triangle.units=8",
@@ -143,7 +142,8 @@ TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
 // picture.
 TEST_F(VerdictRun, TheIntervalOfAWholeFrameHoldsTheGainsOfOtherSeeds) {
   if (!long_tests_run()) GTEST_SKIP() << kInSoak;
-  const std::vector<std::string> whole{"image.width=48", "image.height=36", "image.samples=1"};
+  const std::vector<std::string> whole{"image.width=36", "image.height=24", "image.samples=1",
+                                       "rays.slots_per_resource=16"};
   std::vector<std::string> searched = whole;
   searched.push_back("engine.what_if=true");
   const Json report = run(kTerrain, searched);
@@ -197,6 +197,14 @@ TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
   }
 }
 
+/// How many times the rays of the run the search simulated, by its log.
+double times_of_run(const std::string& log) {
+  const std::string before = "rays, ", after = " times those of the run";
+  const std::size_t end = log.find(after), begin = log.rfind(before, end) + before.size();
+  EXPECT_NE(end, std::string::npos) << log;
+  return end == std::string::npos ? 0 : std::stod(log.substr(begin, end - begin));
+}
+
 // Nothing comes near to what more testers gain here, so that no other class is simulated for the larger pilot: by six
 // classes and the machine as configured it would bring the search to nearly as many rays as the run.
 TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoLargerPilot) {
@@ -206,12 +214,29 @@ TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoLargerPilot) {
                                         "--set", "image.height=160", "--out", "out", "--log-level", "debug"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_EQ(Json::parse(program_.read("out/report.json"))["bottleneck"]["limits"], "triangle_tests");
-  const std::string before = "rays, ", after = " times those of the run";
-  const std::size_t end = outcome.err.find(after), begin = outcome.err.rfind(before, end) + before.size();
-  ASSERT_NE(end, std::string::npos) << outcome.err;
-  const double times = std::stod(outcome.err.substr(begin, end - begin));
+  const double times = times_of_run(outcome.err);
   EXPECT_LT(times, 0.75);
   EXPECT_GT(times, 0.3);
+}
+
+// More testers gain more than twice what anything else does, and the first pilot knows it.
+TEST_F(VerdictRun, ASearchThatIsSureAfterItsFirstPilotStops) {
+  program_.write("a.yaml", kTerrain);
+  const Outcome outcome =
+      program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--out", "out", "--log-level", "debug"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(Json::parse(program_.read("out/report.json"))["bottleneck"]["limits"], "triangle_tests");
+  EXPECT_LT(times_of_run(outcome.err), 0.7);
+}
+
+// The first pilots of this picture are small beside it, half sky, and not quite like the run.
+TEST_F(VerdictRun, AShippedMachineWithAnotherSeedNamesTheSamePart) {
+  const Outcome outcome = program_.run(
+      {"run", CAROUSEL_SOURCE_DIR "/configs/xe2_like.yaml", "--quiet", "--set", "image.seed=2", "--out", "out"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const Json bottleneck = Json::parse(program_.read("out/report.json"))["bottleneck"];
+  EXPECT_EQ(bottleneck["limits"], "shading") << bottleneck.dump(1);
+  EXPECT_EQ(bottleneck["unlike"], "");
 }
 
 TEST_F(VerdictRun, TheSteadyRateIsNeverAboveTheBound) {

@@ -112,6 +112,44 @@ TEST(Foretell, TheIntervalIsAsWideAsTheNoise) {
   EXPECT_LT(width, 0.12);
 }
 
+/// A machine whose rays take as long as their tests, and no test where they are sky; `uses` are those of box units.
+CycleResult testing_machine(std::uint64_t rays, const std::function<double(std::uint64_t)>& tests, double each,
+                            double sky) {
+  CycleResult out;
+  double at = 0, done = 0;
+  for (std::uint64_t i = 0; i < rays; ++i) {
+    done += tests(i);
+    at += tests(i) > 0 ? each * tests(i) : sky;
+    if (i % 8 == 0) out.progress.push_back({static_cast<Cycle>(at), i + 1, {static_cast<Cycle>(done)}});
+  }
+  out.cycles = static_cast<Cycle>(at);
+  out.uses = {{"box_tests", 1, static_cast<Cycle>(done)}};
+  return out;
+}
+
+// The pilot has more dear rays than the frame, in other places. What a test takes is the same in both.
+TEST(Foretell, TestsAreCountedWhereTheyVaryLess) {
+  const auto pilot_tests = [](std::uint64_t i) { return i / 100 % 3 == 0 ? 10.0 : 100.0; };
+  const auto frame_tests = [](std::uint64_t i) { return i / 500 % 3 == 0 ? 100.0 : 10.0; };
+  const CycleResult pilot = testing_machine(4000, pilot_tests, 2, 0), frame = testing_machine(60000, frame_tests, 2, 0),
+                    relaxed = testing_machine(4000, pilot_tests, 1, 0);
+  const Foretelling by_rays({&pilot, 4000}, 60000, 100), foretelling({&pilot, 4000}, 60000, 100, &frame);
+  EXPECT_TRUE(foretelling.by_tests());
+  EXPECT_GT(by_rays.cycles().value, 1.5 * static_cast<double>(frame.cycles));
+  EXPECT_NEAR(foretelling.cycles().value / static_cast<double>(frame.cycles), 1, 0.01);
+  EXPECT_NEAR(foretelling.busy()[0] / static_cast<double>(frame.uses[0].busy), 1, 0.01);
+  EXPECT_NEAR(foretelling.gain({&relaxed, 4000}, 0).value, 1, 0.01);
+}
+
+// Every ray takes as long, whether it is sky or needs tests. By its tests the time of the sky would be left out.
+TEST(Foretell, RaysAreCountedWhereThereIsSky) {
+  const auto tests = [](std::uint64_t i) { return i / 500 % 2 == 0 ? 0.0 : 10.0; };
+  const CycleResult pilot = testing_machine(4000, tests, 2, 20), frame = testing_machine(60000, tests, 2, 20);
+  const Foretelling foretelling({&pilot, 4000}, 60000, 100, &frame);
+  EXPECT_FALSE(foretelling.by_tests());
+  EXPECT_NEAR(foretelling.cycles().value / static_cast<double>(frame.cycles), 1, 0.01);
+}
+
 TEST(Foretell, TheGainOfAWholeFrameIsMeasured) {
   const auto ten = [](std::uint64_t) { return 10.0; };
   const auto nine = [](std::uint64_t) { return 9.0; };

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/numeric/worth_naming.h"
+#include "ringbus/results/cycle_result.h"
+#include "ringbus/verdict/bottleneck_search.h"
+#include "ringbus/verdict/what_if.h"
+
+namespace carousel::ringbus {
+
+// What the search for the bottleneck looks at next, and when it has seen enough. Classes are given by index.
+
+/// A gain that is worth a second look, and a difference of gains that settles a tie.
+inline constexpr double kEnough = 0.03;
+/// Classes that a larger pilot relaxes at most, and where it may become dear.
+inline constexpr std::size_t kContenders = 6, kFewest = 2;
+
+/// True if the parts of a class had nothing to do for more than half of the run.
+inline bool idle(const cycle::CycleResult& run, std::string_view part) {
+  constexpr double kIdle = 0.5;
+  for (const cycle::ClassUse& use : run.uses)
+    if (use.name == part) return static_cast<double>(use.busy) <= kIdle * use.parts * static_cast<double>(run.cycles);
+  return false;
+}
+
+/// The classes that are relaxed together: those of idle parts, and those of which nobody counts how busy they are,
+/// which others wait for, and which more of harms no other part. The others stand alone.
+inline std::vector<std::vector<std::size_t>> search_groups(const std::vector<WhatIf>& classes,
+                                                           const cycle::CycleResult& run) {
+  std::vector<std::vector<std::size_t>> out;
+  std::vector<std::size_t> of_idle, of_waits;
+  for (std::size_t i = 0; i < classes.size(); ++i) {
+    const std::string_view name = classes[i].name();
+    if (idle(run, name))
+      of_idle.push_back(i);
+    else if (classes[i].part.how.keeps_shapes || name.ends_with("_latency") || name == "collection_storage" ||
+             name == "fetch_ahead")
+      of_waits.push_back(i);
+    else
+      out.push_back({i});
+  }
+  for (const std::vector<std::size_t>& group : {of_waits, of_idle})
+    if (!group.empty()) out.push_back(group);
+  return out;
+}
+
+inline void greatest_first(const std::vector<Gain>& gains, std::vector<std::size_t>& classes) {
+  std::stable_sort(classes.begin(), classes.end(),
+                   [&](std::size_t a, std::size_t b) { return gains[a].gain > gains[b].gain; });
+}
+
+/// The class that a verdict would name; absent if it would name none.
+inline std::optional<std::size_t> named_gain(const std::vector<Gain>& gains) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < gains.size(); ++i)
+    if (worth_naming(gains[i].gain, gains[i].low) && (!best || gains[i].gain > gains[*best].gain)) best = i;
+  return best;
+}
+
+/// What the class that a verdict would name surely gains; 0 if it would name none.
+inline double surely(const std::vector<Gain>& gains) {
+  const std::optional<std::size_t> best = named_gain(gains);
+  return best ? gains[*best].low : 0;
+}
+
+/// True if the interval of the class to be named lies apart from all others, but for a difference that settles a tie;
+/// or if none reaches what is worth naming.
+inline bool sure(const std::vector<Gain>& gains) {
+  const std::optional<std::size_t> best = named_gain(gains);
+  const double enough = best ? gains[*best].low + kEnough : kWorthIt;
+  for (std::size_t i = 0; i < gains.size(); ++i)
+    if (i != best && gains[i].high > enough) return false;
+  return true;
+}
+
+/// The classes that a larger pilot relaxes: those that might be the ones to name, the greatest gain first.
+inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gains, std::size_t most) {
+  const double enough = std::max(kEnough, surely(gains));
+  std::vector<std::size_t> out;
+  for (std::size_t i = 0; i < gains.size(); ++i)
+    if (gains[i].together == 1 && gains[i].high >= enough) out.push_back(i);
+  greatest_first(gains, out);
+  out.resize(std::min(out.size(), most));
+  return out;
+}
+
+/// A part matters if more of it gains something, or if it is busy for most of the run.
+inline bool matters(const std::vector<Gain>& gains, const cycle::CycleResult& run, std::string_view part) {
+  const auto gain = std::find_if(gains.begin(), gains.end(), [&](const Gain& one) { return one.name == part; });
+  return (gain != gains.end() && gain->gain >= kEnough) || !idle(run, part);
+}
+
+}  // namespace carousel::ringbus
