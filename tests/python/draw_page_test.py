@@ -10,7 +10,7 @@ class DrawPage(unittest.TestCase):
     def test_every_block_works(self):
         page = text_of("guides/draw-a-machine.md")
         texts = commands("guides/draw-a-machine.md")
-        self.assertEqual(len(texts), 14)
+        self.assertEqual(len(texts), 15)
         with reader() as user:
             printed = user.all(texts)
         # The drawing on the page is what the program prints.

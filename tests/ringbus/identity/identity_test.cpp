@@ -125,7 +125,7 @@ void expect_one_digest(const std::string& engine, int random_machines) {
     std::vector<std::string> all = with;
     all.insert(all.end(), bundles.begin(), bundles.end());
     all.insert(all.end(), more.begin(), more.end());
-    for (int i = cell_count(20); i > 0; --i) run(space.draw_cell(random, all));
+    for (int i = std::max(cell_count(20), 8); i > 0; --i) run(space.draw_cell(random, all));
   }
 #ifndef __SANITIZE_THREAD__
   seen.expect_all();

@@ -165,6 +165,7 @@ class FarControl:
 
     def __init__(self, control):
         self.ids, self.completed = control.ids, control.completed
+        self.questions, self.answers = control.questions, control.answers   # any-hit calls keep their wires
 
 
 class Parcels:

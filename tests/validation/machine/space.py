@@ -80,7 +80,7 @@ def draw_programs(r, config):
     ways = r.choice([1, 2, 4])
     shading["data_cache"] = {"bytes": line * ways * r.choice([0, 1, 2, 7]), "line_bytes": line, "ways": ways,
                              "latency_cycles": r.choice([1, 2, 9])}
-    shading["translation"] = {"page_bytes": r.choice([0, 4096, 65536, 1 << 21]), "entries": r.choice([1, 2, 8])}
+    shading["translation"] = {"page_bytes": r.choice([0, 4096, 4096, 65536]), "entries": r.choice([1, 2, 8])}
 
 
 def draw_any_hit(r, config):
