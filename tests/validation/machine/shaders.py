@@ -189,9 +189,9 @@ class DataPath:
             of.append(address)
             self.at(now + self.latency, self.answer, by)
         elif address in self.coming:
-            self.coming[address].append(by)
+            self.coming[address].append((by, now + self.latency))
         else:
-            self.coming[address] = [by]
+            self.coming[address] = [(by, now)]
             self.at(now + self.latency, self.ask, read)
 
     def ask(self, read, now):
@@ -203,8 +203,8 @@ class DataPath:
             of = self.sets[address // self.line % len(self.sets)]
             del of[:max(0, len(of) + 1 - self.ways)]
             of.append(address)
-            for by in self.coming.pop(address):
-                self.at(now, self.answer, by)
+            for by, known in self.coming.pop(address):
+                self.at(max(now, known), self.answer, by)
             return
         self.level += 1
         if self.level < self.levels:

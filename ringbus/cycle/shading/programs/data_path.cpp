@@ -73,16 +73,17 @@ void DataPath::read_level(Cycle now) {
 void DataPath::look_up_line(std::uint32_t line, Cycle now) {
   if (sets_.empty()) return ask(line, now);
   const std::uint64_t address = lines_[line].address;
+  lines_[line].known = now + latency_;
   ++counts_.lines;
   if (use(set_of(address), address)) {
     ++counts_.hits;
-    return due(now + latency_, What::kAnswer, line);
+    return due(lines_[line].known, What::kAnswer, line);
   }
   const auto [coming, first] = coming_.try_emplace(address);
   coming->second.push_back(line);
   if (!first) return;
   ++counts_.misses;
-  due(now + latency_, What::kAsk, line);
+  due(lines_[line].known, What::kAsk, line);
 }
 
 void DataPath::ask(std::uint32_t line, Cycle now) {
@@ -99,7 +100,8 @@ void DataPath::ask(std::uint32_t line, Cycle now) {
 void DataPath::take(const ProgramRead& read, Cycle now) {
   if (read.to == ProgramRead::To::kCache) {
     put(set_of(read.address), ways_, read.address);
-    for (const std::uint32_t line : coming_.at(read.address)) due(now, What::kAnswer, line);
+    for (const std::uint32_t line : coming_.at(read.address))
+      due(std::max(now, lines_[line].known), What::kAnswer, line);
     coming_.erase(read.address);
     return;
   }

@@ -24,7 +24,7 @@ namespace carousel::ringbus::cycle {
 ///   the page table one after another, each of 512 entries, and puts the page in place of that used least recently.
 /// - The line is then in the cache or not; either is known `latency_cycles` later. A line that was there is the answer.
 ///   Another one is asked for then, and put in place of that of its set that was used least recently when it comes. A
-///   line that is under way is not asked for again.
+///   line that is under way is not asked for again; it is the answer when it has come, and that is known.
 class DataPath final : public ProgramMemory {
  public:
   /// Keeps a reference to the memory.
@@ -60,6 +60,7 @@ class DataPath final : public ProgramMemory {
     ShadeData what;
     std::uint64_t offset, address;  // in its table, and in the simulated memory
     ProgramRead by;
+    Cycle known = 0;  // if the cache has it
   };
   enum class What : std::uint8_t { kPage, kAsk, kAnswer };
   struct Event {
