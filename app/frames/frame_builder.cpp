@@ -85,7 +85,7 @@ std::optional<double> joules_of(const Config& config, const BuilderUse& use, std
                   costs.sram_access_pj(builder_kib(config));
   if (use.l2)
     pj += static_cast<double>(bytes + (use.memory.lines + use.l2->written_back + use.l2->drained) * line_bytes) / 8 *
-          costs.sram_access_pj(static_cast<double>(config.memory.l2_kib));
+          costs.sram_access_pj(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks));
   if (use.dram)
     for (const ringbus::DramUse::Channel& channel : use.dram->channels)
       pj += static_cast<double>(channel.counts.row_misses + channel.counts.row_conflicts) *

@@ -43,6 +43,7 @@ constexpr Row kRows[] = {
     {"frames", kPicture},
     {"frames.step", kLaterFrames},
     {"frames.update", kSeveralFrames},
+    {"frames.cluster_primitives", kSeveralFrames},
     {"frames.cluster_primitives", kClusters},
     {"frames.builder", kCycle},
     {"frames.builder", kUpdates},

@@ -167,6 +167,23 @@ TEST_F(ClustersRun, VerticesThatMovedAreReadAnew) {
   EXPECT_EQ(report["frames"]["rows"][2]["builder"]["bytes_read"], (triangles * 36 + 63) / 64 * 64);
 }
 
+// Beside what TheBuilderHasAnAreaAndItsStoreTakesEnergy has: 64 bits of a bank of the L2, of 512 KiB, take 20 pJ x
+// 5^(log KiB/32 / log 32). It is read or written for each line that is asked for, written or fetched.
+TEST_F(ClustersRun, AnL2ThatTheBuilderAsksTakesTheEnergyOfABank) {
+  const auto access = [](double kib) { return 20 * std::pow(5, std::log(kib / 32) / std::log(32)); };
+  for (const int banks : {1, 4}) {
+    const Json update = second_row(kWaves, {kClusters, "frames.step=0.2", "frames.builder.asks=l2",
+                                            "energy.profile=n45", fmt::format("memory.l2_banks={}", banks)})["builder"];
+    const double bytes = 64 * (update["l2"]["lines"].get<double>() + update["l2"]["written"].get<double>()),
+                 fetched = update["bytes_read"], boxes = update["boxes"];
+    EXPECT_NEAR(update["joules"].get<double>(),
+                1e-12 * (244 * (fetched + update["bytes_written"].get<double>()) + 28.6 * boxes +
+                         (access(36) * (bytes + 32 * boxes) + access(512.0 / banks) * (bytes + fetched)) / 8),
+                1e-13)
+        << banks;
+  }
+}
+
 TEST_F(ClustersRun, RefusesWhatDoesNotFit) {
   const auto no = [&](const std::string& set, const std::string& message) {
     refused(kWaves, {"frames.count=2", kClusters, set}, message);
@@ -184,6 +201,10 @@ TEST_F(ClustersRun, RefusesWhatDoesNotFit) {
   const Outcome idle =
       program_.run({"check", "series.yaml", "--set", "frames.count=2", "--set", "frames.cluster_primitives=9"});
   EXPECT_THAT(idle.err + idle.out, testing::HasSubstr("frames.update chooses no clusters"));
+  const Outcome alone = program_.run(
+      {"check", "series.yaml", "--set", "frames={update: clusters, count: 1}", "--set", "frames.cluster_primitives=9"});
+  EXPECT_THAT(alone.err + alone.out,
+              testing::HasSubstr("frames.cluster_primitives, frames.update (there is one frame)"));
 }
 
 }  // namespace
