@@ -108,11 +108,14 @@ class ProgramRules {
     const std::size_t before = issues_.size();
     const auto known = [&](const std::string& key, const std::string& name) {
       if (name == ShaderProgramsConfig::kBuiltIn || c_.programs.shaders.named.contains(name)) return;
-      if (name == ShaderProgramsConfig::kConstant && key == kAnyHitKey) return;
+      const bool may_be_constant = key == kAnyHitKey;
+      if (name == ShaderProgramsConfig::kConstant && may_be_constant) return;
       std::vector<std::string> names{std::string(ShaderProgramsConfig::kBuiltIn)};
+      if (may_be_constant) names.emplace_back(ShaderProgramsConfig::kConstant);
       for (const auto& [own, shader] : c_.programs.shaders.named) names.push_back(own);
       const auto near = nearest_name(name, names);
-      issue(key, fmt::format("expected a name of programs.shaders, or built_in, found '{}'{}", name,
+      issue(key, fmt::format("expected a name of programs.shaders, or built_in{}, found '{}'{}",
+                             may_be_constant ? ", or constant" : "", name,
                              near ? fmt::format("; did you mean '{}'?", *near)
                                   : fmt::format("; known are {}", fmt::join(names, ", "))));
     };
@@ -193,11 +196,12 @@ class ProgramRules {
 
   void pages_are_whole() {
     const std::int64_t page = c_.shading.translation.page_bytes, line = c_.memory.line_bytes;
+    const DataCacheConfig& cache = c_.shading.data_cache;
     if (page == 0) return;
     if (page < kLeastPage || (page & (page - 1)) != 0)
       issue("shading.translation.page_bytes",
             fmt::format("expected 0, or a power of two from {}, found {}", kLeastPage, page));
-    else if (const std::int64_t most = c_.shading.data_cache.line_bytes.value_or(line); page % most != 0)
+    else if (const std::int64_t most = cache.bytes > 0 ? cache.line_bytes.value_or(line) : line; page % most != 0)
       issue("shading.translation.page_bytes", fmt::format("expected whole lines of {} bytes, found {}", most, page));
   }
 

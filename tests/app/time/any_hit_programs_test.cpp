@@ -128,6 +128,10 @@ TEST_F(AnyHitPrograms, AreNamed) {
             std::string::npos);
   EXPECT_NE(refused(foliage("program: {default: other, any_hit: owm}", own)).find("did you mean 'own'?"),
             std::string::npos);
+  EXPECT_NE(refused(foliage("program: {default: other, any_hit: shader}", own))
+                .find("programs.shaders, or built_in, or constant, found 'shader'; known are built_in, constant, "),
+            std::string::npos)
+      << "what alone may be constant says so";
   EXPECT_NE(refused(foliage("program: {default: other, miss: constant}")).find("found 'constant'"), std::string::npos);
   EXPECT_EQ(refused(foliage("program: {default: other, any_hit: constant}")), "");
 }

@@ -160,7 +160,7 @@ TEST_F(ShaderPrograms, ReadThroughADataCacheAndPages) {
 }
 
 TEST_F(ShaderPrograms, DataCachesAndPagesAreWhole) {
-  const auto refused = [&](const char* set) -> std::string {
+  const auto refused = [&](const std::string& set) -> std::string {
     try {
       report(machine("program: built_in, data_cache: {bytes: 1024}"), {set});
     } catch (const ConfigError& error) {
@@ -175,6 +175,13 @@ TEST_F(ShaderPrograms, DataCachesAndPagesAreWhole) {
               HasSubstr("expected a multiple of memory.line_bytes, which are 64, found 96"));
   EXPECT_THAT(refused("shading.translation.page_bytes=6000"),
               HasSubstr("expected 0, or a power of two from 4096, found 6000"));
+  const auto lines_of_192 = [&](const std::string& cache) {
+    return refused("shading={program: built_in, workers: 1, translation: {page_bytes: 4096}, data_cache: " + cache +
+                   "}");
+  };
+  EXPECT_THAT(lines_of_192("{line_bytes: 192, bytes: 1536}"),
+              HasSubstr("expected whole lines of 192 bytes, found 4096"));
+  EXPECT_EQ(lines_of_192("{line_bytes: 192}"), "") << "there is no cache";
 }
 
 // Shading without programs reads the same surfaces, if they are in memory: those of rays that hit one.
