@@ -32,6 +32,20 @@ bool gives_all(const Config& config, const std::vector<std::string>& given) {
   return all;
 }
 
+/// The numbers that resources have of their own, where the machine would not feel the key of all of them.
+void add_own(const LocatedConfig& located, const SceneFacts& scene, std::vector<IgnoredKey>& out) {
+  const Config& c = located.config;
+  for_each_own(c.topology, [&](const OwnOf& one) {
+    const std::string place = own_place(one);
+    if (unused_because(c, scene, place)) return;  // the entry is named as a whole
+    config::for_each_own_key([&](const auto& row) {
+      if (!(one.keys->*row.own)) return;
+      const std::string key = fmt::format("{}.{}", place, row.name);
+      if (const auto why = unused_because(c, scene, row.path)) out.push_back({key, *why, located.positions.find(key)});
+    });
+  });
+}
+
 bool is_set_by_option(const SourcePosition& position) {
   return position.file.starts_with("--set ");
 }
@@ -53,6 +67,8 @@ std::vector<IgnoredKey> ignored_keys(const LocatedConfig& located, const SceneFa
     const bool differs = std::find(differing.begin(), differing.end(), key) != differing.end();
     if (!resolved || differs || is_set_by_option(position)) out.push_back({key, *why, position});
   }
+  add_own(located, scene, out);
+  std::ranges::sort(out, {}, &IgnoredKey::key);
   return out;
 }
 

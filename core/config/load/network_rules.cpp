@@ -301,9 +301,12 @@ class NetworkRules {
   void faulty_links_carry_packets() {
     constexpr std::string_view otherwise = "; expected no faults of links, or ";
     if (!properties_of(c.topology).has_packets)
-      breach_("faults.links", fmt::format("independent resources have no links{}{}", otherwise,
-                                          c.topology.shape == TopologyShape::kGraph ? "topology.trace: packets"
-                                                                                    : "another topology.shape"));
+      breach_("faults.links",
+              c.topology.shape == TopologyShape::kGraph
+                  ? fmt::format("no link of this graph carries packets, and others have no faults{}"
+                                "topology.trace: packets",
+                                otherwise)
+                  : fmt::format("independent resources have no links{}another topology.shape", otherwise));
     else if (c.topology.resources == 1)
       breach_("faults.links", fmt::format("one resource has no links{}more topology.resources", otherwise));
     else if (c.collections.home == Home::kLocal)

@@ -1,8 +1,10 @@
 // Drawings whose resources trace their own rays (topology.trace: stacks): what is read, and what is refused and where.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "core/config/key_conditions.h"
+#include "core/config/load/ignored_keys.h"
 #include "core/config/write.h"
 #include "tests/core/config/config_issues.h"
 
@@ -47,6 +49,24 @@ TEST(StackConfig, KeysOfPacketsHaveNoEffect) {
             "the network has the clock of the resources");
   EXPECT_EQ(unused_because(parse_config("scene: {builtin: cornell}\n", "test.yaml"), {}, "topology.trace"),
             "the topology is not drawn");
+}
+
+// A resource's own number is felt where that of all resources is.
+TEST(StackConfig, NamesWhatResourcesOfTheirOwnCannotFeel) {
+  const auto unfelt = [](std::string text) {
+    std::vector<std::string> out;
+    for (const IgnoredKey& one : ignored_keys(load_config({std::move(text), "test.yaml"}, {}, {}), {}))
+      out.push_back(fmt::format("{} at {}", one.key, one.position.line));
+    return out;
+  };
+  const std::string own = "  overrides: [{nodes: 'r[2]', capacity: 9000, slots_per_resource: 64, ids_per_cycle: 2}]\n";
+  EXPECT_THAT(unfelt(machine(kCache, kToCache, own)),
+              ElementsAre("topology.overrides.0.capacity at 8", "topology.overrides.0.ids_per_cycle at 8"));
+  EXPECT_THAT(unfelt("scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology:\n  shape: graph\n  nodes: [{name: r, "
+                     "count: 4, capacity: 9000, partial_after_cycles: 9}]\n  links: [{ring: 'r[*]'}]\n"),
+              ElementsAre("topology.nodes.0.partial_after_cycles at 5"));
+  EXPECT_THAT(unfelt("scene: {builtin: cornell}\ntopology: {overrides: [{resource: 1, fetch_ahead: 3}]}\n"),
+              ElementsAre("topology.overrides at 2"));
 }
 
 struct BadStack {
@@ -106,9 +126,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadStack{"Bundles", machine("", "", "bundles: {size: 4}\n"),
                  "test.yaml:5:10: topology.trace: independent resources trace single rays; expected packets, found "
                  "stacks, or bundles.size: 0"},
-        BadStack{"LinkFaults", machine("", "", "faults: {links: {drop: 0.1}}\n"),
-                 "faults.links: independent resources have no links; expected no faults of links, or topology.trace: "
-                 "packets"},
+        BadStack{
+            "LinkFaults", machine("", "", "faults: {links: {drop: 0.1}}\n"),
+            "faults.links: no link of this graph carries packets, and others have no faults; expected no faults of "
+            "links, or topology.trace: packets"},
         BadStack{"Window", machine("", "", "testers: {window: 2}\n"),
                  "testers.window: topology.trace: stacks has no input queues; expected 1, found 2"}),
     [](const auto& one) { return one.param.name; });
