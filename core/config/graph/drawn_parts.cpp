@@ -82,7 +82,9 @@ class PartFinder {
         parts_.caches.push_back({{}, interleave(entry)});
       parts_.caches.back().nodes.push_back(node);
     }
-    if (parts_.caches.empty()) return refuse_carrier(Carried::kShapes, "a node of the kind cache, or packets alone");
+    if (parts_.caches.empty())
+      return refuse_carrier(Carried::kShapes, graph_.stacks ? "a node of the kind cache, or links without them"
+                                                            : "a node of the kind cache, or packets alone");
     parts_.caches_of.assign(graph_.resources, kNone);
     const std::size_t before = issues_.size();
     for (std::size_t group = 0; group < parts_.caches.size(); ++group) serve(group);

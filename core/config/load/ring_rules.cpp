@@ -99,7 +99,7 @@ void check_stop_ring(const Config& config, const Graph& graph, std::size_t entry
   };
   only(link.virtual_channels.has_value(), "virtual_channels", "auto");
   only(link.dateline, "dateline", "false");
-  only(link.carries != plain.carries, "carries", "[packets]");
+  only(link.carries != plain.carries, "carries", properties_of(c).has_packets ? "[packets]" : "stops: {rule: queues}");
   std::set<std::uint32_t> stops;  // nodes that are missing have no link, which check_ways() says
   std::size_t links = 0;
   for (const Graph::Link& one : graph.links) {

@@ -123,6 +123,16 @@ INSTANTIATE_TEST_SUITE_P(
                          "clocks: {slow: 500}\n"),
                  "topology.links.0.carries: a drawing that carries more than packets has one clock yet; expected equal "
                  "clocks"},
+        BadStack{"NoCache", machine("", "{ring: 'r[*]', carries: [shapes]}"),
+                 "test.yaml:7:35: topology.links.0.carries: nothing of the kind shapes travels; expected a node of the "
+                 "kind cache, or links without them"},
+        BadStack{"Stops",
+                 machine(", {name: x, kind: router, count: 3}" + kCache,
+                         "{from: 'r[*]', to: 'x[0]', both: true, carries: [shapes]}, {ring: 'x[*]', both: true, "
+                         "carries: [shapes], stops: {rule: slots}}, {from: 'x[1]', to: l2, both: true, carries: "
+                         "[shapes]}"),
+                 "topology.links.1.carries: a ring with rule: slots has no queues and carries packets; expected stops: "
+                 "{rule: queues}"},
         BadStack{"Bundles", machine("", "", "bundles: {size: 4}\n"),
                  "test.yaml:5:10: topology.trace: independent resources trace single rays; expected packets, found "
                  "stacks, or bundles.size: 0"},
