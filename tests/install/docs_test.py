@@ -4,6 +4,8 @@ reference are what the program writes. CAROUSEL names the program."""
 import os
 import runpy
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
@@ -37,7 +39,7 @@ def docs(*words):
 
 
 class Check(unittest.TestCase):
-    def faults(self, nav=NAV, **changed):
+    def faults(self, nav=NAV, repository=True, **changed):
         with tempfile.TemporaryDirectory(prefix="carousel_docs_") as folder:
             root = Path(folder)
             shutil.copytree(SOURCE / "web/docs", root / "web/docs", ignore=shutil.ignore_patterns("__pycache__"))
@@ -46,13 +48,21 @@ class Check(unittest.TestCase):
             files = {**PAGES, **{name.replace("__", "/").replace("_md", ".md"): text for name, text in changed.items()}}
             for name, text in files.items():
                 (root / name).write_text(text)
-            subprocess.run(["git", "-C", root, "init", "-q"], check=True)
+            for words in (("init", "-q"), ("add", "-A"))[:2 if repository else 0]:
+                subprocess.run(["git", "-C", root, *words], check=True)
+            (root / "stray").mkdir()
+            (root / "stray/own.md").write_text("[a](b.md)\n" if repository else "")
             done = docs("--check", "--root", root)
             self.assertEqual(done.returncode, 1 if done.stderr else 0)
             return done.stderr
 
     def test_good_pages_have_no_fault(self):
         self.assertEqual(self.faults(), "")
+
+    def test_pages_without_a_repository(self):
+        self.assertEqual(self.faults(repository=False), "")
+        self.assertIn("a list needs an empty line",
+                      self.faults(repository=False, docs__index_md=PAGES["docs/index.md"] + "Text:\n- a\n"))
 
     def test_a_link_to_a_file_that_is_not_there(self):
         self.assertIn(f"docs/index.md:3: other.md: there is no {GONE}other.md",
@@ -126,18 +136,52 @@ class Reference(unittest.TestCase):
         self.assertEqual(len(broken), 1)
         self.assertIn("carousel check gone.yaml: ended with status 2", broken[0])
 
+    def test_a_line_that_serves_ends_where_interrupts_are_ignored_and_its_port_is_taken(self):
+        """So it is in the background of a shell, and where two tests run at once."""
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        self.addCleanup(signal.signal, signal.SIGINT, before)
+        with socket.socket() as taken:
+            taken.bind(("127.0.0.1", 0))
+            taken.listen()
+            lines = [f"carousel serve {folder} --port {taken.getsockname()[1]}" for folder in ("small", "gone")]
+            with unittest.mock.patch.object(command_examples, "LINES", {"serve": lines}):
+                broken = list(command_pages.broken_commands(CAROUSEL))
+        self.assertIn(len(broken), (0, 1))   # none without the module that serves
+        self.assertTrue(all("serve gone" in line and "ended with status 2" in line for line in broken), broken)
+
+    def test_numbers_by_chance(self):
+        """A page keeps what this machine lacks or has by chance: a commit, a queue that was looked at, a run over ranks."""
+        page = Path(self.folder.name) / "docs/reference/report/a.md"
+        page.parent.mkdir(parents=True)
+        for key, value, here in (("carousel.commit", '"abc"', {"few-rays": {"carousel": {"commit": None}}}),
+                                 ("carousel.checked", "true", {"few-rays": {"carousel": {"checked": False}}}),
+                                 ("rays.a", "1", {"native": {"rays": {"a": 2}}, "ranks": None}),
+                                 ("rays.a", "1", {"native": {"rays": {}}, "ranks": None})):
+            with self.subTest(here):
+                source = next(reversed(here))
+                before = f"| `{key}` | | a | `{value}` | [{source}](index.md#{source}) |"
+                page.write_text(before + "\n")
+                text = f"# R\n\ntext\n\n## a\n| key | unit | meaning |\n|---|---|---|\n| `{key}` | | a |\n"
+                with (unittest.mock.patch.object(report_examples, "RUNS", dict.fromkeys(here, ([], []))),
+                      unittest.mock.patch.object(report_pages, "run_report", lambda _, __, name: here[name]),
+                      unittest.mock.patch.object(report_pages, "printed", lambda *_: text)):
+                    pages = report_pages.report_pages(CAROUSEL, self.folder.name, Path(self.folder.name), missing := [])
+                self.assertIn(before.split("| a |")[1], pages["report/a.md"])
+                self.assertFalse([line for line in missing if "lacks" in line or source in line])
+
     def test_numbers_that_vary_stay_as_they_are(self):
         self.assertEqual([report_pages.kind_of(text) for text in ("`0.25`", "`1e-05`", '`"a"`', "`true`", "3 rows")],
-                         ["number", "number", "text", "true", "rows"])
+                         ["number", "number", "text", "truth", "rows"])
 
     def test_a_page_that_is_old_and_one_that_is_gone(self):
         root = Path(self.folder.name)
         for name in ("a", "b"):
             (root / "docs/reference/config").mkdir(parents=True, exist_ok=True)
-            (root / f"{GONE}reference/config/{name}.md").write_text("old")
-        with unittest.mock.patch.object(reference_pages, "all_pages", lambda *_: ({f"{GONE}reference/config/a.md": "new"}, [])):
+            (root / f"{GONE}reference/config/{name}.md").write_text("same\nold")
+        with unittest.mock.patch.object(reference_pages, "all_pages", lambda *_: ({f"{GONE}reference/config/a.md": "same\nnew"}, [])):
             found = reference_pages.differences(CAROUSEL, root)
         self.assertEqual([line.split(":")[0] for line in found], [f"{GONE}reference/config/{name}.md" for name in ("a", "b")])
+        self.assertIn("line 2 is 'old', the program's 'new'", found[0])
 
 
 class Charts(unittest.TestCase):

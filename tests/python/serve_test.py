@@ -4,7 +4,6 @@ import http.client
 import json
 import os
 import re
-import signal
 import socket
 import subprocess
 import tempfile
@@ -55,7 +54,7 @@ class Serve(unittest.TestCase):
 
     @classmethod
     def tearDownClass(cls):
-        cls.server.send_signal(signal.SIGINT)
+        cls.server.terminate()   # tests in the background of a shell ignore SIGINT
         status = cls.server.wait(20)
         cls.server.stdout.close()
         cls.server.stderr.close()

@@ -88,7 +88,7 @@ try {
   await browser.close();
   console.log(faults.length ? faults.join('\n') : 'the page answers');
 } finally {
-  server?.kill('SIGINT');
+  server?.kill('SIGTERM');
   await rm(folder, {recursive: true});
 }
 process.exit(faults.length ? 1 : 0);

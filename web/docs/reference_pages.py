@@ -1,4 +1,5 @@
 """Writes the pages of docs/reference that a program writes, and says where they are others. script/docs has the options."""
+import itertools
 import pathlib
 import re
 import tempfile
@@ -51,9 +52,17 @@ def write(program, root):
     return missing
 
 
+def first_difference(old, new):
+    """The line of the page and that of the program where they part."""
+    lines = itertools.zip_longest(old.split("\n"), new.split("\n"))
+    at, before, now = next((at, *two) for at, two in enumerate(lines, 1) if two[0] != two[1])
+    return f"line {at} is {before!r}, the program's {now!r}"
+
+
 def differences(program, root):
     pages, missing = all_pages(program, root)
     for name, text in pages.items():
-        if not (root / name).exists() or (root / name).read_text() != text:
-            missing.append(f"{name}: is not what the program writes: script/docs --write {program}")
+        old = (root / name).read_text() if (root / name).exists() else ""
+        if old != text:
+            missing.append(f"{name}: is not what the program writes, {first_difference(old, text)}: script/docs --write {program}")
     return missing + [f"{file.relative_to(root)}: the program does not write it: script/docs --write {program}" for file in stale(pages, root)]

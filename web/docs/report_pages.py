@@ -38,6 +38,8 @@ def run_report(program, folder, name):
             return None
         words = ["mpirun", "--allow-run-as-root", "--oversubscribe", "-n", str(report_examples.PROCESSES[name]), *words]
     done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=folder)
+    if done.returncode != 0 and name in report_examples.PROCESSES:
+        return None   # no MPI in the program, or one that starts nothing here; the tests of ranks tell
     if done.returncode != 0:
         raise SystemExit(f"web/docs/report_examples.py: the run {name} ended with status {done.returncode}:\n{done.stderr}")
     return json.loads((pathlib.Path(folder) / f"reports/{name}/report.json").read_text())
@@ -63,7 +65,7 @@ def kind_of(text):
     """What a cell holds: values that vary are compared by this."""
     text = text.strip("`")
     return "number" if re.fullmatch(r"-?[\d.]+(e[-+]?\d+)?", text) else "text" if text.startswith('"') else "rows" if text.endswith(
-        (" row", " rows")) or text.startswith("[") else text if text in ("true", "false", "keys below") else "other"
+        (" row", " rows")) or text.startswith("[") else "truth" if text in ("true", "false") else text if text == "keys below" else "other"
 
 
 def kept_examples(root):
@@ -85,19 +87,19 @@ def report_pages(program, folder, root, missing):
     def example(key):
         if key.startswith(tuple(report_examples.NONE)):
             return ["none", next(why for name, why in report_examples.NONE.items() if key.startswith(name))]
-        for name, report in reports.items():
-            values, before = found_at(report, key), kept.get(f"`{key}`")
-            once = name in report_examples.VARYING_RUNS and before and before[1].startswith(f"[{name}]")
-            if values or once:
-                used.add(name)
-            if not values and once:   # this time the run has none, or it cannot run here
-                return before
-            if not values:
-                continue
-            now = [cell(shown(next((one for one in values if one not in ([], {}, "")), values[0]))), f"[{name}](index.md#{name})"]
-            varies = name in report_examples.VARYING_RUNS or any(
-                key == one or key.startswith((one + ".", one + "[")) for one in report_examples.VARY)
-            return before if varies and before and before[1] == now[1] and kind_of(before[0]) == kind_of(now[0]) else now
+        before = kept.get(f"`{key}`")
+        source = before[1][1:].partition("]")[0] if before else ""   # the run whose number the page has
+        name, values = next(((name, now) for name, report in reports.items() if (now := found_at(report, key))), (None, []))
+        now = [cell(shown(next((one for one in values if one not in ([], {}, "")), values[0]))), f"[{name}](index.md#{name})"] if name else None
+        varies = any(key == one or key.startswith((one + ".", one + "[")) for one in report_examples.VARY)
+        chance = source in report_examples.VARYING_RUNS and name in (None, *report_examples.VARYING_RUNS)
+        if source in reports and (chance or varies and name in (None, source)) and (
+                name != source or kind_of(before[0]) == kind_of(now[0])):   # of another name: this time that run has none, or does not run here
+            used.add(source)
+            return before
+        if now:
+            used.add(name)
+            return now
         if not any(key.startswith((one + ".", one + "[")) for one in absent):
             absent.append(key)
             missing.append(f"web/docs/report_examples.py: RUNS lacks a run that has {key}, or NONE a reason why no run has it")
