@@ -4,8 +4,10 @@ from html import escape
 HUES = ("#0072b2", "#e69f00", "#009e73", "#cc79a7", "#56b4e9", "#d55e00")
 STYLE = """<style>
 .ground { fill: #ffffff } .ink { fill: #16202b } .soft { fill: #4a5765 } .line { stroke: #d5dce3 } .mark { stroke: #4a5765 }
+.end { fill: #4a5765; stroke: #ffffff; stroke-width: 3; paint-order: stroke }
 @media (prefers-color-scheme: dark) {
   .ground { fill: #12171d } .ink { fill: #e8edf2 } .soft { fill: #a9b6c3 } .line { stroke: #36424e } .mark { stroke: #a9b6c3 }
+  .end { fill: #a9b6c3; stroke: #12171d }
 }
 </style>"""
 CHARACTER, BAR, GAP, WIDTH, MARGIN = 7.1, 13, 8, 780, 14
@@ -50,13 +52,17 @@ def draw(title, head_of_rows, panels, rows, mark, stacked):
         high, low = max([0, *lengths, *([mark] if mark else [])]), min([0, *lengths])
         ends = [" + ".join(short(v) for v in row if v) if stacked else max((short(v) for v in row if v is not None), key=len, default="")
                 for row in values]
-        room = max(width_of(end) for end in ends) + 10
+        room = max(width_of(end) for end in ends) + 16
         before = room if low < 0 else 0   # for a number on the left of a bar
         x0 = left + index * wide
         scale = (wide - room - 6 - before) / (high - low or 1)
         zero = x0 + before - low * scale
         out.append(text(x0, y, head, "soft"))
         out.append(f'<line class="line" x1="{zero:.1f}" y1="{top - 4:.1f}" x2="{zero:.1f}" y2="{top + height * len(rows) - GAP + 4:.1f}"/>')
+        if mark:   # below the numbers, whose ground hides it
+            x = zero + mark * scale
+            out.append(f'<line class="mark" x1="{x:.1f}" y1="{top - 4:.1f}" x2="{x:.1f}" y2="{top + height * len(rows) - GAP + 4:.1f}" '
+                       'stroke-dasharray="3 3"/>')
         for number, row in enumerate(values):
             at, x = top + number * height, zero
             for i, value in enumerate(row):
@@ -68,16 +74,12 @@ def draw(title, head_of_rows, panels, rows, mark, stacked):
                 if stacked:
                     x += value * scale
                 elif value < 0:
-                    out.append(text(begin - 4, at + 10.5, short(value), "soft", "end"))
+                    out.append(text(begin - 4, at + 10.5, short(value), "end", "end"))
                 else:
-                    out.append(text(begin + value * scale + 4, at + 10.5, short(value), "soft"))
+                    out.append(text(begin + value * scale + 4, at + 10.5, short(value), "end"))
                 at += 0 if stacked else BAR
             if stacked:
-                out.append(text(x + 5, at + 10.5, ends[number], "soft"))
-        if mark:
-            x = zero + mark * scale
-            out.append(f'<line class="mark" x1="{x:.1f}" y1="{top - 4:.1f}" x2="{x:.1f}" y2="{top + height * len(rows) - GAP + 4:.1f}" '
-                       'stroke-dasharray="3 3"/>')
+                out.append(text(x + 5, at + 10.5, ends[number], "end"))
     out.append(text(left - 10, y, head_of_rows, "soft", "end"))
     for number, (label, _) in enumerate(rows):
         out.append(text(left - 10, top + number * height + (height - GAP) / 2 + 4, label, anchor="end"))
