@@ -370,8 +370,7 @@ std::optional<std::string_view> part_unused(const C& c, const S& s, std::string_
 std::optional<std::string_view> units_unused(const C& c, const S& s, std::string_view key) {
   const bool cost = lies_in(key, "energy") || lies_in(key, "area");
   const std::string_view name = name_in(key, cost ? key.substr(0, key.find('.')) : "testers");
-  const auto row =
-      std::find_if(kCostTable.begin(), kCostTable.end(), [&](const CostRow& of) { return of.key == name; });
+  const auto row = std::ranges::find(kCostTable, name, &CostRow::key);
   if (cost && row != kCostTable.end() && !kProfile.holds(c, s)) return kProfile.otherwise;
   for (const UnitKindRow& unit : kUnitKinds)
     if (unit.key == name && !has_units(c, s, unit.kind) && !(lies_in(key, "energy.bundle") && has_bundles(c)) &&

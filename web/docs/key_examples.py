@@ -166,6 +166,8 @@ KEYS = {
     "topology.ways.0.at": NEXT,
     "topology.ways.0.to": NEXT,
     "topology.ways.0.next": NEXT,
+    "topology.overrides.0.partial_after_cycles": ["collections.partial=after", "topology.overrides=[{resource: 1, KEY: VALUE}]"],
+    "topology.nodes.0.partial_after_cycles": ["collections.partial=after"] + NODE,
     "topology.trace": CACHES[:2] + ["topology.links=[{from: 'r[*]', all_to: 'a[*]', both: true, carries: [shapes]}, "
                                     "{from: 'a[*]', to: d, both: true, carries: [shapes]}]"],
     "topology.tour": GRAPH[:2] + ["topology.links=[{ring: 'r[0], r[2], r[1], r[3]', both: true}]"],
