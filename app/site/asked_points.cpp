@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -95,6 +96,14 @@ Json results_of(const Json& sweep, const Json& report) {
   return out;
 }
 
+/// The report of a run that came to its end; that of an interrupted one is no result of the point.
+std::optional<Json> whole_report(const fs::path& run) {
+  std::error_code error;
+  if (!fs::exists(run / "report.json", error)) return std::nullopt;
+  Json report = report::read_document(run / "report.json").json;
+  return report.value("incomplete", false) ? std::nullopt : std::optional(std::move(report));
+}
+
 std::string text_in(const fs::path& file) {
   constexpr std::size_t kMost = 2000;
   std::ifstream in(file);
@@ -142,7 +151,7 @@ HttpAnswer AskedPoints::start(const fs::path& folder, const std::vector<std::pai
   const fs::path run = folder / "asked" / name;
   std::error_code error;
   const std::scoped_lock lock(mutex_);
-  if (running_ == run || fs::exists(run / "report.json", error)) return told(202, {{"name", name}});
+  if (running_ == run || whole_report(run)) return told(202, {{"name", name}});
   if (!running_.empty()) return {409, "text/plain; charset=utf-8", "another point is being simulated; ask again\n"};
   const Json config = base_config(folder, sweep);
   if (!config.is_object()) return wrong("no point of this sweep has a configuration to begin with");
@@ -209,13 +218,13 @@ HttpAnswer AskedPoints::state(const fs::path& folder, const std::string& name) {
   }
   std::error_code error;
   if (fs::weakly_canonical(run, error) != run) return none;
-  if (fs::exists(run / "report.json", error)) {
+  if (const std::optional<Json> report = whole_report(run)) {
     const Json sweep = report::read_document(folder / "sweep.json").json;
-    const Json report = report::read_document(run / "report.json").json;
-    return told(200, {{"state", "done"}, {"results", results_of(sweep, report)}, {"page", "asked/" + name + "/"}});
+    return told(200, {{"state", "done"}, {"results", results_of(sweep, *report)}, {"page", "asked/" + name + "/"}});
   }
   if (!fs::exists(with_ending(run, ".log"), error)) return none;
-  return told(200, {{"state", "failed"}, {"error", text_in(with_ending(run, ".log"))}});
+  const std::string log = text_in(with_ending(run, ".log"));
+  return told(200, {{"state", "failed"}, {"error", log.empty() ? "the run was interrupted; ask again" : log}});
 }
 
 }  // namespace carousel::app

@@ -151,7 +151,7 @@ class Reference(unittest.TestCase):
 
     def test_numbers_by_chance(self):
         """A page keeps what this machine lacks or has by chance: a commit, a queue that was looked at, a run over ranks."""
-        page = Path(self.folder.name, "docs", "reference", "report", "a.md")
+        page = Path(self.folder.name) / f"{GONE}reference/report/a.md"
         page.parent.mkdir(parents=True)
         for key, value, here in (("carousel.commit", '"abc"', {"few-rays": {"carousel": {"commit": None}}}),
                                  ("carousel.checked", "true", {"few-rays": {"carousel": {"checked": False}}}),

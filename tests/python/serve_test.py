@@ -131,26 +131,46 @@ class Serve(unittest.TestCase):
     def simulate(self, query, path="0/sweep/ask", **more):
         return self.site(f"{path}?{query}", method="POST", **more)
 
-    def test_simulates_a_point_between_those_of_a_sweep(self):
-        answer, text = self.simulate("topology.resources=3")
+    def done(self, query):
+        """How the run of a point is when it goes on no more."""
+        answer, text = self.simulate(query)
         self.assertEqual(answer.status, 202, text)
-        name = json.loads(text)["name"]
         for _ in range(200):
-            state = json.loads(self.site(f"0/sweep/ask?name={name}")[1])
+            state = json.loads(self.site(f"0/sweep/ask?name={json.loads(text)['name']}")[1])
             if state["state"] != "running":
                 break
             time.sleep(0.1)
+        return state
+
+    def test_simulates_a_point_between_those_of_a_sweep(self):
+        state = self.done("topology.resources=3")
+        name = json.loads(self.simulate("topology.resources=3")[1])["name"]
         self.assertEqual(state["state"], "done", state)
         carousel(self.folder, "run", "a.yaml", "--set", "topology.resources=3", "--out", "three", "--quiet")
         report = json.loads((self.folder / "three/report.json").read_text())
         self.assertEqual(state["results"]["cycles"], report["engine"]["cycles"])
         self.assertIn(b"What limits it", self.site("0/sweep/" + state["page"])[1])
         written = {p.name for p in (self.folder / "out/sweep/asked").iterdir()}
-        self.assertEqual(written, {name, name + ".config.json", name + ".log"})
+        self.assertEqual({one for one in written if one.startswith(name)}, {name, name + ".config.json", name + ".log"})
         # It is not run again.
         before = (self.folder / "out/sweep/asked" / name / "report.json").stat().st_mtime_ns
         self.assertEqual(json.loads(self.simulate("topology.resources=3")[1]), {"name": name})
         self.assertEqual((self.folder / "out/sweep/asked" / name / "report.json").stat().st_mtime_ns, before)
+
+    def test_an_interrupted_run_is_no_result(self):
+        """Such as that of a server that ended meanwhile: its report has what was simulated until then."""
+        self.assertEqual(self.done("topology.resources=2")["state"], "done")
+        name = json.loads(self.simulate("topology.resources=2")[1])["name"]
+        file = self.folder / "out/sweep/asked" / name / "report.json"
+        report = json.loads(file.read_text())
+        whole = report["engine"]["cycles"]
+        del report["checksum"]
+        report["incomplete"] = True
+        report["engine"]["cycles"] = whole // 2
+        file.write_text(json.dumps(report))
+        self.assertEqual(json.loads(self.site(f"0/sweep/ask?name={name}")[1]),
+                         {"state": "failed", "error": "the run was interrupted; ask again"})
+        self.assertEqual(self.done("topology.resources=2")["results"]["cycles"], whole)
 
     def test_refuses_other_points(self):
         for query, message in (("", b"expected a value"), ("topology.resources=5", b"from 2 to 4"),
