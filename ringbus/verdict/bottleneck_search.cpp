@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "core/numeric/worth_naming.h"
+#include "ringbus/verdict/cold_caches.h"
 #include "ringbus/verdict/foretell.h"
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"
@@ -23,10 +24,6 @@ namespace carousel::ringbus {
 
 namespace {
 
-double rays_per_kilocycle(std::uint64_t rays, double cycles) {
-  return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
-}
-
 class Search {
  public:
   Search(const Config& config, const accel::Accel& accel, float scene_size, const PilotFactory& make_pilot,
@@ -38,6 +35,7 @@ class Search {
     noise_seeds_ = stops_ ? 0 : run.noise_seeds;  // the whole machine's noise is not that of a run in which one stops
     what_ifs_ = what_ifs(config_, accel_);
     out_.gains.resize(what_ifs_.size());
+    cold_ = cold(*run.result.cycle, slots_of(config_));
   }
 
   Bottleneck search() {
@@ -50,8 +48,10 @@ class Search {
     if (!whole && out_.complete) find_noise();
     note_phases();
     for (int larger = 0; out_.complete && !out_.whole && !(told() || larger == kLargerPilots); ++larger) {
-      std::vector<std::size_t> worth = worth_a_second_look(out_.gains, likeness_.other_cycles ? kFewest : kContenders);
-      const std::uint64_t paths = next_paths(worth);
+      const bool of_memory = cold_ && !out_.unlike.empty();
+      std::vector<std::size_t> worth =
+          worth_a_second_look(out_.gains, of_memory || likeness_.other_cycles ? kFewest : kContenders, of_memory);
+      const std::uint64_t paths = next_paths(worth, kLargerPilots - larger);
       if (paths == 0) break;
       out_.paths = paths;
       begin(larger == 0 ? "second pilot" : "larger pilot", worth.size());
@@ -62,8 +62,7 @@ class Search {
     if (out_.complete) judge();
     if (whole && out_.complete) replicate();
     if (!out_.complete || !out_.unlike.empty()) return without_gains();
-    std::stable_sort(out_.gains.begin(), out_.gains.end(),
-                     [](const Gain& a, const Gain& b) { return a.gain > b.gain; });
+    std::stable_sort(out_.gains.begin(), out_.gains.end(), [](auto& a, auto& b) { return a.gain > b.gain; });
     return out_;
   }
 
@@ -79,6 +78,11 @@ class Search {
   std::uint64_t share(double part, std::size_t simulations) const {
     return static_cast<std::uint64_t>(std::max(0.0, part) * static_cast<double>(frame()) /
                                       static_cast<double>(simulations));
+  }
+
+  /// The part of the run's rays that so many simulations of these paths take.
+  double part_of_run(std::uint64_t paths, std::size_t simulations) const {
+    return static_cast<double>(simulations * paths) / static_cast<double>(run_.paths);
   }
 
   /// The part of the run's rays that a search of this extent has left.
@@ -169,9 +173,10 @@ class Search {
         note(tried[k].front(), gain, 1);
       }
       // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
+      // A pilot that is not like the run, and may not even tell that from nothing, tells less of each.
       const double enough = std::max(kEnough, surely(out_.gains));
       for (const auto& [group, gain] : several) {
-        if (gain.value < kEnough || gain.high < enough)
+        if (gain.value < kEnough || gain.high < enough || (likeness_.other_cycles && gain.low <= 0))
           for (const std::size_t i : group) note(i, gain, group.size());
         else
           halve(group, parts);
@@ -244,6 +249,12 @@ class Search {
       for (const std::size_t i : classes)
         if (relaxed_[i].paths != out_.paths && out_.gains[i].high >= surely) missing.push_back(i);
       if (first && missing.size() >= kMany) missing.resize(kFirst);
+      // After that, the one that would be named by an earlier pilot's gain.
+      if (const auto best = named_gain(out_.gains);
+          missing.empty() && best && out_.gains[*best].together == 1 && relaxed_[*best].paths != out_.paths) {
+        missing.push_back(*best);
+        pilots_.expect_more(std::find(classes.begin(), classes.end(), *best) == classes.end());
+      }
       if (missing.empty()) break;
       relax(missing);
       if (!out_.complete) return;
@@ -256,11 +267,11 @@ class Search {
   /// class stands out in spite of the difference.
   bool told() { return judge() && sure(out_.gains); }
 
-  /// Paths of the next pilot, which is to relax these classes; 0 if what it takes is not worth it. Twice as many if the
-  /// present one is not like the run, whatever that takes.
-  std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
+  /// Paths of the next pilot, which is to relax these classes, of so many that may follow; 0 if what it takes is not
+  /// worth it. If the present one is not like the run, another follows, whatever that takes.
+  std::uint64_t next_paths(std::vector<std::size_t>& worth, int left) const {
     const std::uint64_t twice = std::min(run_.paths, 2 * out_.paths);
-    if (!out_.unlike.empty()) return twice;
+    if (!out_.unlike.empty()) return paths_after_unlike(out_.paths, run_.paths, worth.size(), left, cold_);
     if (worth.empty()) return 0;
     const std::uint64_t wanted = pilot_paths(config_, run_.paths, frame(), share(left_of(kWanted), worth.size() + 1));
     if (left_of(kWanted) > 0 && wanted >= out_.paths + out_.paths / 2) return wanted;
@@ -268,30 +279,33 @@ class Search {
     if (best.gain < kWorthIt || worth_naming(best.gain, best.low)) return 0;
     // The greatest gain may be noise.
     worth.resize(std::min(worth.size(), kFewest));
-    const double takes =
-        static_cast<double>(worth.size() + 1) * static_cast<double>(twice) / static_cast<double>(run_.paths);
-    return takes <= left_of(kAtMost) ? twice : 0;
+    return part_of_run(twice, worth.size() + 1) <= left_of(kAtMost) ? twice : 0;
   }
 
-  /// Notes the noise of the cycles by the present pilot's, with the run's seed and with others.
-  void note_noise(std::vector<double> others) {
-    others.push_back(static_cast<double>(base_.cycle->cycles));
-    out_.noise = cycle_noise(others, out_.whole);
-    out_.noise_paths = out_.paths;
+  /// Notes the noise of the cycles by those of pilots of so many paths with the run's seed and with others.
+  void note_noise(const std::vector<double>& cycles, std::uint64_t paths) {
+    out_.noise = cycle_noise(cycles, paths >= run_.paths);
+    out_.noise_paths = paths;
   }
 
-  /// Simulates the pilot with other seeds: its places in the picture are the same, and their rays are others.
+  /// Simulates the pilot with other seeds: its places in the picture are the same, and their rays are others. Where no
+  /// larger pilot is to follow, what the search has left makes these pilots larger, and their noise smaller.
   void find_noise() {
     if (noise_seeds_ == 0) return;
-    pilots_.begin("other seeds", noise_seeds_, out_.paths);
+    const std::uint64_t twice = 2 * out_.paths;
+    const bool larger = told() && twice <= run_.paths && part_of_run(twice, noise_seeds_ + 1) <= left_of(kWanted);
+    const std::uint64_t of_gains = std::exchange(out_.paths, larger ? twice : out_.paths);
+    pilots_.begin("other seeds", noise_seeds_ + (larger ? 1 : 0), out_.paths);
     std::deque<Config> machines;
     std::vector<const Config*> which;
-    for (std::uint64_t k = 1; k <= noise_seeds_; ++k)
-      which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
+    for (std::uint64_t k = larger ? 0 : 1; k <= noise_seeds_; ++k)
+      which.push_back(k == 0 ? &config_ : &machines.emplace_back(with_other_seed(config_, k)));
     std::vector<double> cycles;
+    if (!larger) cycles.push_back(static_cast<double>(base_.cycle->cycles));
     for (const RunResult& result : simulate(which))
       if (out_.complete) cycles.push_back(static_cast<double>(result.cycle->cycles));
-    if (out_.complete) note_noise(std::move(cycles));
+    if (out_.complete) note_noise(cycles, out_.paths);
+    out_.paths = of_gains;
   }
 
   /// Simulates the whole frame with other seeds of the picture, as configured and with the classes that may be named,
@@ -328,7 +342,8 @@ class Search {
       }
     }
     out_.replicates = replicates;
-    if (noise_seeds_ > 0) note_noise(std::move(cycles));
+    cycles.push_back(static_cast<double>(base_.cycle->cycles));
+    if (noise_seeds_ > 0) note_noise(cycles, out_.paths);
   }
 
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
@@ -357,7 +372,7 @@ class Search {
   const accel::Accel& accel_;
   const SearchedRun& run_;
   PilotRuns pilots_;
-  bool stops_ = false;
+  bool stops_ = false, cold_ = false;  // a resource; caches of the run
   std::uint64_t noise_seeds_ = 0;
   std::vector<WhatIf> what_ifs_;
   std::map<std::size_t, Relaxed> relaxed_;  // by index of what_ifs_

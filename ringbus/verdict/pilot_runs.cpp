@@ -18,14 +18,17 @@ std::uint64_t slots_of(const Config& config) {
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
   // Twice the rays that fill a machine with twice the slots: half of the pilot is then between fill and drain.
   constexpr std::uint64_t kFills = 2, kLeastRays = 1500, kMostFills = 32, kMostRays = 80'000;
+  // A pilot that is a good part of a small frame spares little, and the frame leaves no question.
+  constexpr std::uint64_t kSmallFills = 3, kSmallRays = 3000;
   const std::uint64_t fill = 2 * fill_rays(slots_of(config));
   const double rays_each =
       static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
-  const std::uint64_t least = std::max(kLeastRays, kFills * fill), most = std::max(kMostRays, kMostFills * fill);
-  const auto pilot =
-      static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
-  // A pilot of most of the frame spares little, and the frame leaves no question.
-  return 3 * pilot >= 2 * paths ? paths : pilot;
+  const auto at_least = [&](std::uint64_t least) {
+    const std::uint64_t most = std::max(kMostRays, kMostFills * fill);
+    return static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
+  };
+  if (3 * at_least(std::max(kSmallRays, kSmallFills * fill)) >= 2 * paths) return paths;
+  return at_least(std::max(kLeastRays, kFills * fill));
 }
 
 Config with_other_seed(const Config& machine, std::uint64_t k) {

@@ -27,7 +27,7 @@ struct SearchedRun {
 std::uint64_t slots_of(const Config& config);
 
 /// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
-/// is most of the frame.
+/// is most of the frame, or the frame is small beside what a pilot needs.
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);
 
 /// The machine with the picture's k-th other seed, of the same range, far from those that users count up from.

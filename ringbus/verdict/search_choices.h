@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "core/numeric/worth_naming.h"
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/verdict/bottleneck_search.h"
+#include "ringbus/verdict/cold_caches.h"
 #include "ringbus/verdict/what_if.h"
 
 namespace carousel::ringbus {
@@ -19,6 +21,10 @@ namespace carousel::ringbus {
 inline constexpr double kEnough = 0.03;
 /// Classes that a larger pilot relaxes at most, and where it may become dear.
 inline constexpr std::size_t kContenders = 6, kFewest = 2;
+
+inline double rays_per_kilocycle(std::uint64_t rays, double cycles) {
+  return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
+}
 
 /// True if the parts of a class had nothing to do for more than half of the run.
 inline bool idle(const cycle::CycleResult& run, std::string_view part) {
@@ -78,15 +84,33 @@ inline bool sure(const std::vector<Gain>& gains) {
   return true;
 }
 
-/// The classes that a larger pilot relaxes: those that might be the ones to name, the greatest gain first.
-inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gains, std::size_t most) {
+/// The classes that a larger pilot relaxes: those that might be the ones to name, the greatest gain first;
+/// `memory_first`: after those that gain more while caches are cold.
+inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gains, std::size_t most,
+                                                    bool memory_first) {
   const double enough = std::max(kEnough, surely(gains));
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < gains.size(); ++i)
     if (gains[i].together == 1 && gains[i].high >= enough) out.push_back(i);
   greatest_first(gains, out);
+  if (memory_first)
+    std::stable_partition(out.begin(), out.end(), [&](std::size_t i) { return gains_of_cold_caches(gains[i].name); });
   out.resize(std::min(out.size(), most));
   return out;
+}
+
+/// True if most of what the run waited for may be first reads of lines: memory was busy for most of it. Part of such a
+/// frame is not like it, since no pilot knows when the frame reads a line first.
+inline bool cold(const cycle::CycleResult& run, std::uint64_t slots) {
+  return !idle(run, "memory_bandwidth") && reads_between(run, slots).first_share() >= kColdShare;
+}
+
+/// Paths of the pilot that follows one that is not like the run, of `left` that may: twice as many, or the whole frame
+/// if it is cold or takes no more than doubling the pilot so often. The frame's run as configured is known.
+inline std::uint64_t paths_after_unlike(std::uint64_t pilot, std::uint64_t frame, std::size_t classes, int left,
+                                        bool cold) {
+  const std::uint64_t doubled = ((std::uint64_t{2} << left) - 2) * pilot * (classes + 1);
+  return classes > 0 && (cold || doubled >= classes * frame) ? frame : std::min(frame, 2 * pilot);
 }
 
 /// A part matters if more of it gains something, or if it is busy for most of the run.

@@ -1,0 +1,119 @@
+// When a pilot is like enough to the run, tried as a user would: machines drawn by `script/verdicts`, whose pilots
+// differ.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/app/support/program.h"
+
+namespace carousel::verdict_pilots_test {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+class VerdictPilots : public testing::Test {
+ protected:
+  Json searched(const std::string& config) const {
+    program_.write("a.yaml", config);
+    const Outcome outcome = program_.run({"run", "a.yaml", "--quiet", "--set", "engine.what_if=true", "--out", "out"});
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(program_.read("out/report.json"));
+  }
+
+  const Program program_;
+};
+
+constexpr const char* kOnePart =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 56, height: 40, samples: 2, max_depth: 5}\n"
+    "scene: {builtin: terrain, triangles: 4000}\n"
+    "topology: {resources: 4, shape: ring, visit: owners, link: {latency_cycles: 1, bytes_per_cycle: 16, depth: 16}}\n"
+    "packets: {ids_per_cycle: 2}\n"
+    "collections: {traversal: spread}\n"
+    "rays: {slots_per_resource: 16}\n"
+    "testers: {box: {units: 1}, triangle: {units: 4, interval_cycles: 1}, contexts: 2}\n"
+    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 32, l2_kib: 8, shape_buffer_kib: "
+    "64}\n"
+    "shading: {workers: 1, cycles_per_shade: 60}\n";
+
+constexpr const char* kIdlePart =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 40, height: 28, samples: 2, max_depth: 5}\n"
+    "scene: {builtin: spheres, triangles: 8000}\n"
+    "topology: {resources: 8, shape: independent, visit: owners, link: {latency_cycles: 16, bytes_per_cycle: 16, "
+    "depth: 16}}\n"
+    "packets: {ids_per_cycle: 32}\n"
+    "collections: {traversal: spread}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "testers: {box: {units: 1}, triangle: {units: 4, interval_cycles: 1}, contexts: 2}\n"
+    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 32, l2_kib: 64, shape_buffer_kib: "
+    "16}\n"
+    "shading: {workers: 1, cycles_per_shade: 4}\n";
+
+constexpr const char* kOtherCycles =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 48, height: 32, samples: 2, max_depth: 2}\n"
+    "scene: {builtin: terrain, triangles: 4000}\n"
+    "topology: {resources: 8, shape: bus, visit: owners, link: {latency_cycles: 1, bytes_per_cycle: 4, depth: 16}}\n"
+    "packets: {ids_per_cycle: 32}\n"
+    "collections: {traversal: treelet}\n"
+    "bvh: {treelet_triangles: 64}\n"
+    "rays: {slots_per_resource: 16}\n"
+    "testers: {box: {units: 4}, triangle: {units: 4, interval_cycles: 4}, contexts: 2}\n"
+    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 4, l2_kib: 64, shape_buffer_kib: "
+    "64}\n"
+    "shading: {workers: 16, cycles_per_shade: 4}\n";
+
+constexpr const char* kNearCycles =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 48, height: 32, samples: 2, max_depth: 5}\n"
+    "scene: {builtin: cornell}\n"
+    "topology: {resources: 8, shape: independent, visit: all, link: {latency_cycles: 4, bytes_per_cycle: 64, depth: "
+    "16}}\n"
+    "packets: {ids_per_cycle: 8}\n"
+    "collections: {traversal: spread}\n"
+    "rays: {slots_per_resource: 64}\n"
+    "testers: {box: {units: 4}, triangle: {units: 4, interval_cycles: 4}, contexts: 4}\n"
+    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 400, dram_bytes_per_cycle: 4, l2_kib: 64, shape_buffer_kib: "
+    "4}\n"
+    "shading: {workers: 4, cycles_per_shade: 20}\n";
+
+// The pilot's workers are busy for 74 % of the time, and the run's for 89 %. Without these 15 points the interval of
+// contexts would be above zero; with a veto a larger pilot would name shading.
+TEST_F(VerdictPilots, ASmallDeviationOfOnePartVetoesNothingAndWidensIntervals) {
+  const Json bottleneck = searched(kOnePart)["bottleneck"];
+  EXPECT_EQ(bottleneck["unlike"], "");
+  EXPECT_EQ(bottleneck["limits"], "") << bottleneck.dump(1);
+  ASSERT_FALSE(bottleneck["gains"].empty());
+  const Json& best = bottleneck["gains"][0];
+  EXPECT_GT(best["gain"], 0.05);
+  EXPECT_LE(best["low"], 0) << best.dump();
+}
+
+// Memory is busy for 55 % of the pilot's time and 40 % of the run's, and twice its bandwidth gains nothing.
+TEST_F(VerdictPilots, APartThatDoesNotMatterVetoesNothing) {
+  const Json report = searched(kIdlePart), bottleneck = report["bottleneck"];
+  EXPECT_EQ(bottleneck["unlike"], "");
+  ASSERT_FALSE(bottleneck["gains"].empty());
+  EXPECT_LT(bottleneck["rays"], 0.5 * report["rays"]["completed"].get<double>()) << bottleneck.dump(1);
+}
+
+// The run takes 17 % longer than the first pilot foretells. Links would be named by that pilot, too, but for another
+// gain.
+TEST_F(VerdictPilots, OtherCyclesAreSearchedAgainThoughThatIsDear) {
+  const Json report = searched(kOtherCycles), bottleneck = report["bottleneck"];
+  EXPECT_EQ(bottleneck["unlike"], "");
+  EXPECT_EQ(bottleneck["limits"], "link_bandwidth") << bottleneck.dump(1);
+  EXPECT_EQ(bottleneck["rays"], report["rays"]["completed"]);
+}
+
+// The run takes 9 % longer than the pilot foretells, three points more than its uncertainty. Shading stands out.
+TEST_F(VerdictPilots, AClassThatStandsOutIsNamedInSpiteOfSlightlyOtherCycles) {
+  const Json report = searched(kNearCycles), bottleneck = report["bottleneck"];
+  EXPECT_EQ(bottleneck["limits"], "shading") << bottleneck.dump(1);
+  EXPECT_GT(bottleneck["deviation"], bottleneck["noise"]);
+  EXPECT_LT(bottleneck["rays"], 0.5 * report["rays"]["completed"].get<double>());
+}
+
+}  // namespace
+}  // namespace carousel::verdict_pilots_test
