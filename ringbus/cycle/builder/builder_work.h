@@ -48,12 +48,12 @@ BuilderWork refit_work(const accel::Accel& accel, const ShapeMemory& memory, con
 BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
                          std::uint64_t local_primitives);
 
-/// An update of clusters that has been done (`done`, accel::update_clusters). A bit a cluster says which have moved. Each
-/// of these reads the list of its primitives' numbers, 4 bytes each, its nodes, for their references, and the positions
-/// of its primitives, and writes its nodes and leaves, a record of 32 bytes with its box and root, and the list if it is
-/// another. A task takes neighbours that moved, up to 64 primitives. Where the clusters of a mesh are dealt out, the
-/// records of all of them and the nodes above are read and these nodes written; otherwise nodes above clusters that
-/// moved read themselves and the records or nodes below, and are written. The top level is refitted.
+/// An update of clusters that has been done (`done`, accel::update_clusters). A bit a cluster says which have moved.
+/// Each of these reads the list of its primitives' numbers, 4 bytes each, its nodes, for their references, and the
+/// positions of its primitives, and writes its nodes and leaves, a record of 32 bytes with its box and root, and the
+/// list if it is another. A task takes neighbours that moved, up to 64 primitives. Where the clusters of a mesh are
+/// dealt out, the records of all of them and the nodes above are read and these nodes written; otherwise nodes above
+/// clusters that moved read themselves and the records or nodes below, and are written. The top level is refitted.
 BuilderWork cluster_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
                          const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done);
 

@@ -56,8 +56,8 @@ class IndependentTile final : public ResourceAgent {
   struct Thread {
     RayId ray;
     RayWalk walk;
-    accel::NodeKey strip;         // fetched or in test
-    HitBatch calls;               // any-hit calls to ask shading for when it has been tested
+    accel::NodeKey strip;  // fetched or in test
+    HitBatch calls;        // any-hit calls to ask shading for when it has been tested
   };
   /// A ray in test. Of rays whose tests end at one time, the one that began first goes on first.
   struct Test {
