@@ -122,7 +122,7 @@ bool MachineSpace::prune(Domains& domains) const {
 }
 
 std::optional<Row> MachineSpace::draw(std::mt19937& random, Domains domains) {
-  for (int attempt = 0; attempt < 5; ++attempt) {
+  for (int attempt = 0; attempt < 50; ++attempt) {  // a row that cannot be repaired says nothing of the others
     if (!prune(domains)) return std::nullopt;
     Row row = draw_any(random, domains);
     for (int repair = 0; repair < 100; ++repair) {
