@@ -2,21 +2,15 @@
 // Sliders give what lies between the points, the button has a point simulated, and its page opens. Exit status 1 and a
 // line for each fault.
 import {execFile, spawn} from 'node:child_process';
-import {existsSync} from 'node:fs';
 import {mkdtemp, readFile, rm, writeFile} from 'node:fs/promises';
-import {createRequire} from 'node:module';
 import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 import {promisify} from 'node:util';
 
+import {chromiumOf, skip} from './chromium.mjs';
+
 const [program, sources] = process.argv.slice(2, 4).map((path) => resolve(path));
-const require = createRequire(join(sources, 'web/package.json'));
-const browser_path = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
-const skip = (why) => { console.log(`skipped: ${why}; script/bootstrap all installs it`); process.exit(77); };
-if (!browser_path) skip('chromium is not installed');
-if (!existsSync(join(sources, 'web/node_modules/playwright-core'))) skip('web/node_modules is missing');
-const {chromium} = require('playwright-core');
-const axe = await readFile(require.resolve('axe-core/axe.min.js'), 'utf8');
+const {axe, launch} = await chromiumOf(sources);
 
 const folder = await mkdtemp(join(tmpdir(), 'carousel-ask-'));
 const faults = [];
@@ -38,8 +32,7 @@ try {
     server.stderr.on('data', (data) => { text += data; });
     server.on('exit', () => fail(new Error(text)));
   }).catch((error) => (error.message.includes('libcpp-httplib-dev') ? skip('the module http is not built') : Promise.reject(error)));
-  const browser = await chromium.launch({executablePath: browser_path, args: ['--no-sandbox', '--disable-gpu', '--no-first-run',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync']});
+  const browser = await launch();
   const page = await browser.newPage({viewport: {width: 400, height: 800}});
   const told = [];
   page.on('console', (m) => told.push(`${m.type()}: ${m.text()}`));

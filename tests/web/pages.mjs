@@ -2,25 +2,18 @@
 // Every kind of page, or with `all` also the pages of a dozen machines; with CAROUSEL_EFFORT below 1 few kinds. On a phone, on a large screen, dark, and without
 // scripts: no message on the console, marks in every chart, the JSON's numbers in tables and charts, and no violation that
 // axe-core finds. Exit status 1 and a line for each fault.
-import {existsSync} from 'node:fs';
-import {mkdtemp, readFile, rm, stat} from 'node:fs/promises';
-import {createRequire} from 'node:module';
+import {mkdtemp, rm, stat} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
 import {join, resolve} from 'node:path';
 
+import {chromiumOf} from './chromium.mjs';
 import {all, pages, shortly} from './machines.mjs';
 import {wrongCharts, wrongTables} from './numbers.mjs';
 import {make, playsRanks} from './program.mjs';
 import {wrongStudy} from './study_numbers.mjs';
 
 const [program, sources] = process.argv.slice(2, 4).map((path) => resolve(path)), wanted = process.argv[4];
-const require = createRequire(join(sources, 'web/package.json'));
-const browser_path = ['/usr/bin/chromium', '/usr/bin/chromium-browser'].find(existsSync);
-const skip = (why) => { console.log(`skipped: ${why}; script/bootstrap all installs it`); process.exit(77); };
-if (!browser_path) skip('chromium is not installed');
-if (!existsSync(join(sources, 'web/node_modules/playwright-core'))) skip('web/node_modules is missing');
-const {chromium} = require('playwright-core');
-const axe = await readFile(require.resolve('axe-core/axe.min.js'), 'utf8');
+const {axe, launch} = await chromiumOf(sources);
 
 const folder = await mkdtemp(join(tmpdir(), 'carousel-pages-'));
 const faults = [];
@@ -132,8 +125,7 @@ async function look(browser, name, command, {page: file, json}) {
 try {
   const few = Number(process.env.CAROUSEL_EFFORT ?? 1) < 1;  // script/test; script/soak opens all
   const list = wanted === 'all' ? all : few && !wanted ? Object.fromEntries(shortly.map((n) => [n, all[n]])) : wanted ? Object.fromEntries(wanted.split(',').map((n) => [n, all[n]])) : pages;
-  const browser = await chromium.launch({executablePath: browser_path, args: ['--no-sandbox', '--disable-gpu', '--no-first-run',
-    '--disable-background-networking', '--disable-component-update', '--disable-sync']});
+  const browser = await launch();
   if (Object.values(list).some((page) => page.ranks) && !(await playsRanks(program, sources))) {
     console.log('no page of ranks: the program was built without MPI, or mpirun starts no processes');
     for (const [name, page] of Object.entries(list)) if (page.ranks) delete list[name];
