@@ -94,7 +94,8 @@ void describe(V& v, const VersusRun& r) {
   v.field("memory_bytes_per_ray", r.memory_bytes_per_ray, "bytes/ray", "bytes from and to memory");
   v.field("nj_per_ray", r.nj_per_ray, "nJ/ray", "energy");
   v.field("hits", r.hits, "", "digest of the hits, which is the same for all machines");
-  v.field("nearest", r.nearest, "", "digest of all hits of rays that look for several, likewise; empty if none do");
+  v.field("nearest", r.nearest, "",
+          "digest of all hits of rays that look for several, likewise; empty if none do. Gaussians are not in it");
   v.field("image", r.image, "", "digest of the picture, likewise; empty for a list of rays");
 }
 

@@ -39,7 +39,8 @@ void describe(V& v, const Nearest& r) {
   describe(v, r.counts);
   v.section("by_round", r.rounds, "each round");
   v.field("digest", r.digest, "",
-          "128 bits over all their hits, by the bits of the ray and the rank of the hit, in any order of rays");
+          "128 bits over all their hits, by the bits of the ray and the rank of the hit, in any order of rays. Hits of "
+          "Gaussians are not in it: they are blended, and the digest of the picture tells of them");
 }
 
 }  // namespace carousel::report
