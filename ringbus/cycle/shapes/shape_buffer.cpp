@@ -17,8 +17,16 @@ ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, con
       shift_(64 - 6) {}
 
 ShapeBuffer::UserState& ShapeBuffer::state_of(User user) {
-  if (user >= users_.size()) users_.resize(user + 1);
+  if (user >= users_.size()) {
+    users_.resize(user + 1);
+    requests_.resize(user + 1);
+  }
   return users_[user];
+}
+
+void ShapeBuffer::need_far(User user, std::size_t spans) {
+  if (spans > kNear && user >= far_.size()) [[unlikely]]
+    far_.resize(user + 1);
 }
 
 // ---- users
@@ -28,7 +36,7 @@ bool ShapeBuffer::take(User user, const ShapeNeed& need, Cycle now) {
   if (grant(user, need, true, now)) return state.missing == 0;
   ++counts_.room_waits;
   state.state = State::kWaits;
-  state.need = need;
+  requests_[user].need = need;
   room_.push_back(user);
   return false;
 }
@@ -50,15 +58,17 @@ void ShapeBuffer::hand_over(User from, User to) {
   UserState& giver = users_[from];
   receiver.state = State::kHolds;
   receiver.missing = 0;
-  receiver.entries = giver.entries;
+  receiver.near = giver.near;
   receiver.spans = giver.spans;
+  need_far(to, giver.spans);
+  if (giver.spans > kNear) far_[to] = far_[from];
   giver.state = State::kNothing;
 }
 
 /// Gives up all that a user holds.
 void ShapeBuffer::drop(UserState& state, User user) {
   for (std::uint32_t which = 0; which < state.spans; ++which) {
-    const std::uint32_t entry = state.entries[which];
+    const std::uint32_t entry = hold_of(user, which).entry;
     if (entry == kNone) continue;
     if (!entries_[entry].here) stop_waiting(entry, wait_of(user, which));
     let_go(entry);
@@ -72,8 +82,7 @@ void ShapeBuffer::take_ahead(User user, const ShapeNeed& need, Cycle now, std::u
   UserState& state = state_of(user);
   state.state = State::kWaits;
   state.ahead = true;
-  state.need = need;
-  state.others = others;
+  requests_[user] = {need, others};
   queue_.push_back(user);
   serve(now);
 }
@@ -102,7 +111,7 @@ void ShapeBuffer::clear_queue(Cycle now) {
 /// before the packets of the issue queue, which give up their places for it.
 bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) {
   const std::size_t spans = need.size();
-  Entries found;
+  std::array<std::uint32_t, ShapeNeed::kMost> found;
   std::fill(found.begin(), found.begin() + spans, kNone);
   std::uint64_t wanted = 0;
   const auto look = [&] {
@@ -140,19 +149,19 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
   state.state = State::kHolds;
   state.missing = 0;
   state.complete_at = now;
-  state.spans = static_cast<std::uint32_t>(spans);
-  std::copy_n(found.begin(), spans, state.entries.begin());
+  state.spans = static_cast<std::uint8_t>(spans);
+  need_far(user, spans);
   for (const std::uint32_t entry : std::span(found).first(spans))
     if (entry != kNone) hold(entry);
   for (std::size_t which = 0; which < spans; ++which) {
+    std::uint32_t& entry = hold_of(user, which).entry = found[which];
     if (need[which].bytes == 0) continue;
-    std::uint32_t& entry = state.entries[which];
     count_read(need[which].row, entry == kNone);
     if (entry == kNone) {
       while (free_places_ < places_to_ask(need[which])) evict_oldest();
       entry = allocate(need[which], places_to_ask(need[which]));
       hold(entry);
-      port_.request(need[which], entry, now, state.ahead ? state.others : 0);
+      port_.request(need[which], entry, now, state.ahead ? requests_[user].others : 0);
       ++fetches_;
       ++counts_.misses;
     } else {
@@ -174,14 +183,14 @@ void ShapeBuffer::count_read(std::uint16_t row, bool missed) {
 void ShapeBuffer::serve(Cycle now) {
   while (!room_.empty()) {
     const User user = room_.front();
-    const ShapeNeed need = users_[user].need;
+    const ShapeNeed& need = requests_[user].need;
     if (!grant(user, need, true, now)) return;
     room_.pop_front();
     if (users_[user].missing == 0) ready_.push_back(user);
   }
   for (; granted_ < queue_.size(); ++granted_) {
     const User user = queue_[granted_];
-    const ShapeNeed need = users_[user].need;
+    const ShapeNeed& need = requests_[user].need;
     if (!grant(user, need, false, now)) return;
     queue_changed_ = true;
   }

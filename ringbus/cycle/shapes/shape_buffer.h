@@ -94,8 +94,8 @@ class ShapeBuffer {
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
-  /// A span in the buffer. Its index is the tag of its fetch.
-  struct Entry {
+  /// A span in the buffer, in a line of the host's cache. Its index is the tag of its fetch.
+  struct alignas(64) Entry {
     ShapeSpan span;
     std::uint64_t places = 0;
     std::uint32_t holders = 0;
@@ -105,26 +105,35 @@ class ShapeBuffer {
     std::uint32_t first_wait = kNone, last_wait = kNone;
   };
   enum class State : std::uint8_t { kNothing, kWaits, kHolds };
-  using Entries = std::array<std::uint32_t, ShapeNeed::kMost>;
+  /// A span of a user's need: its entry, and the wait behind the user's at it.
+  struct Hold {
+    std::uint32_t entry = kNone, next_wait = kNone;
+  };
+  static constexpr std::size_t kNear = 2;  // spans of most needs
+  /// Short, as rays in subtrees are users, and all of them wait in turn.
   struct UserState {
     State state = State::kNothing;
-    bool ahead = false;        // in the issue queue
-    std::uint8_t missing = 0;  // spans that have not come
-    Cycle complete_at = 0;     // the last span came, or all were there
-    Entries entries{};         // as many as the need has spans
-    std::uint32_t spans = 0;   // of its need
-    Entries next_wait{};       // behind it at the same entry, by span
-    ShapeNeed need;            // while it waits for room
+    bool ahead = false;                   // in the issue queue
+    std::uint8_t missing = 0, spans = 0;  // of its need: those that have not come, and all
+    std::array<Hold, kNear> near{};       // the first ones
+    Cycle complete_at = 0;                // the last span came, or all were there
+  };
+  static_assert(ShapeNeed::kMost <= 32);
+  /// Of a user that waits for room.
+  struct Request {
+    ShapeNeed need;
     std::uint64_t others = 0;  // that get it too; of a packet of the issue queue
   };
 
   /// A user's wait for one of its spans, as a number.
-  static std::uint32_t wait_of(User user, std::size_t which) {
-    return static_cast<std::uint32_t>(ShapeNeed::kMost) * user + static_cast<std::uint32_t>(which);
+  static std::uint32_t wait_of(User user, std::size_t which) { return user << 5 | static_cast<std::uint32_t>(which); }
+  static User user_of(std::uint32_t wait) { return wait >> 5; }
+  std::uint32_t& next_wait(std::uint32_t wait) { return hold_of(user_of(wait), wait & 31).next_wait; }
+  Hold& hold_of(User user, std::size_t which) {
+    return which < kNear ? users_[user].near[which] : far_[user][which - kNear];
   }
-  static User user_of(std::uint32_t wait) { return wait / static_cast<std::uint32_t>(ShapeNeed::kMost); }
-  std::uint32_t& next_wait(std::uint32_t wait) { return users_[user_of(wait)].next_wait[wait % ShapeNeed::kMost]; }
   UserState& state_of(User user);
+  void need_far(User user, std::size_t spans);
   bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
   std::uint32_t find(const ShapeSpan& span) const;
   void remove(std::uint32_t entry);
@@ -154,9 +163,11 @@ class ShapeBuffer {
   std::size_t used_ = 0;  // entries
   std::uint32_t free_entry_ = kNone, oldest_ = kNone, newest_ = kNone;
   std::vector<UserState> users_;
-  std::deque<User> room_;    // tests that wait for room
-  std::deque<User> queue_;   // packets of the issue queue
-  std::size_t granted_ = 0;  // the first packets of the queue, which have places
+  std::vector<std::array<Hold, ShapeNeed::kMost - kNear>> far_;  // by user: its other spans
+  std::vector<Request> requests_;                                // by user
+  std::deque<User> room_;                                        // tests that wait for room
+  std::deque<User> queue_;                                       // packets of the issue queue
+  std::size_t granted_ = 0;                                      // the first packets of the queue, which have places
   std::vector<User> ready_;
   std::vector<std::uint32_t> spill_answers_;
   bool queue_changed_ = false;

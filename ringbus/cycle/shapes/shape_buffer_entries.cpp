@@ -10,7 +10,7 @@ std::uint32_t ShapeBuffer::find(const ShapeSpan& span) const {
 }
 
 std::uint32_t ShapeBuffer::allocate(const ShapeSpan& span, std::uint64_t places) {
-  if (++used_ > buckets_.size()) grow_buckets();
+  if (2 * ++used_ > buckets_.size()) grow_buckets();
   std::uint32_t index = free_entry_;
   if (index == kNone) {
     index = static_cast<std::uint32_t>(entries_.size());
