@@ -19,7 +19,9 @@ struct RayStages {
   /// The last answer to `starts` tests of each kind, the first at `at`, beside the tests of others. Answers that come
   /// one after another are noted in `overlap`.
   Cycle through(PerUnit<UnitBank>& units, Cycle at, const PerUnit<std::uint64_t>& starts, BankOverlap& overlap) const {
-    const auto beside = [&](UnitKind kind, Cycle from) { return units[kind].reserve_beside(from, starts[kind]).last; };
+    const auto beside = [&](UnitKind kind, Cycle from) {
+      return starts[kind] == 0 ? from : units[kind].reserve_beside(from, starts[kind]).last;
+    };
     const Cycle moved = beside(UnitKind::kTransform, at);
     const bool planes_first = order == CullPlanesConfig::Order::kPlanesFirst && starts[UnitKind::kPlane] > 0;
     const Cycle boxed = planes_first ? beside(UnitKind::kBox, beside(UnitKind::kPlane, moved))
@@ -31,8 +33,9 @@ struct RayStages {
     const Cycle looked_up = beside(UnitKind::kMicromap, met);
     const Cycle seen = inline_any_hit ? beside(UnitKind::kAnyHit, looked_up) : looked_up;
     // A hit finds its place in the buffer step by step, and the next one when it is there.
-    UnitBank& buffers = units[UnitKind::kHitBuffer];
     const std::uint64_t steps = starts[UnitKind::kHitBuffer];
+    if (steps == 0) return std::max(boxed, seen);
+    UnitBank& buffers = units[UnitKind::kHitBuffer];
     const UnitBank::Reservation buffered = buffers.reserve_beside(seen, steps);
     const Cycle in_turn = seen + buffers.chain(steps);
     if (in_turn > buffered.last) overlap.expect(buffered.first - buffers.latency(), in_turn);

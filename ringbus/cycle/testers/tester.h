@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -75,8 +76,8 @@ class Tester {
   void distribute(Cycle at, std::span<const std::uint32_t> slots, const IntersectionCounts& counts,
                   std::uint64_t shape_bytes, std::vector<Cycle>& decided) {
     for (const UnitKindRow& row : kUnitKinds)
-      passes_[row.kind] += row.stage == Stage::kAnyHit ? lookups(counts) : passes_of(row.kind, counts);
-    passes_[UnitKind::kTransform] += inversion_passes(counts);
+      count(row.kind, row.stage == Stage::kAnyHit ? lookups(counts) : passes_of(row.kind, counts));
+    count(UnitKind::kTransform, inversion_passes(counts));
     distributor_->test(at, slots, counts, shape_bytes, overlap_, decided);
   }
   Distributor* distributor() { return distributor_ ? &*distributor_ : nullptr; }
@@ -87,8 +88,9 @@ class Tester {
     if (ray.inversion > 0) at = invert(at, ray.inversion);
     PerUnit<std::uint64_t> vectors{};
     for (const UnitKindRow& row : kUnitKinds)
-      if (row.stage != Stage::kAnyHit || stages_.inline_any_hit)
-        vectors[row.kind] = starts(row.kind, ray.passes(row.kind), {1});
+      if (const std::uint64_t passes = ray.passes(row.kind);
+          passes > 0 && (row.stage != Stage::kAnyHit || stages_.inline_any_hit))
+        vectors[row.kind] = starts(row.kind, passes, {1});
     // Neither the decoding of a block nor the steps of a ray's buffer are spread over lanes.
     for (const UnitKind kind : {UnitKind::kDecoder, UnitKind::kHitBuffer}) vectors[kind] = ray.tests[kind];
     return stages_.through(banks_, at, vectors, overlap_);
@@ -96,13 +98,13 @@ class Tester {
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
   /// The end of the inversion of a matrix, which takes so many passes.
   Cycle invert(Cycle at, std::uint64_t passes) {
-    passes_[UnitKind::kTransform] += passes;
+    count(UnitKind::kTransform, passes);
     return banks_[UnitKind::kTransform].reserve(at, passes).last;
   }
   /// The time at which so many compressed blocks have been decoded. The units take them whole, not in lanes,
   /// and blocks of several visits side by side.
   Cycle decode(Cycle at, std::uint64_t blocks) {
-    passes_[UnitKind::kDecoder] += blocks;
+    count(UnitKind::kDecoder, blocks);
     return blocks == 0 ? at : banks_[UnitKind::kDecoder].reserve_beside(at, blocks).last;
   }
   /// The time at which `records` records that are wanted at `at` have been read, beside others.
@@ -118,9 +120,10 @@ class Tester {
       testing_.latency += together.latency;
     }
     builder_.busy_before(now);
-    for (const auto [kind, bank] : banks_)
+    for_each_used([&](UnitKind kind) {
       distributor_ ? units_[kind].account(distributor_->units(kind), state, now)
-                   : units_[kind].account(bank, state, now);
+                   : units_[kind].account(banks_[kind], state, now);
+    });
     ray_reads_.account(store_, state, now);
     primitive_reads_.account(primitive_store_, state, now);
   }
@@ -199,11 +202,21 @@ class Tester {
     }
   };
 
+  void count(UnitKind kind, std::uint64_t passes) {
+    passes_[kind] += passes;
+    used_ |= std::uint32_t{passes > 0} << unit_index(kind);
+  }
+  /// Most machines use few kinds of units.
+  template <class Call>
+  void for_each_used(const Call& call) {
+    for (std::uint32_t rest = used_; rest != 0; rest &= rest - 1)
+      call(kUnitKinds[static_cast<std::size_t>(std::countr_zero(rest))].kind);
+  }
   /// Before any bank forgets times until `now`.
   void advance(Cycle now) {
     overlap_.advance(now, [&](const auto& take) {
       if (distributor_) distributor_->each_bank(take);
-      for (const auto [kind, bank] : std::as_const(banks_)) take(bank);
+      for_each_used([&](UnitKind kind) { take(std::as_const(banks_[kind])); });
       for (const UnitBank* port : {&store_, &primitive_store_, &builder_}) take(*port);
     });
   }
@@ -212,7 +225,7 @@ class Tester {
   }
   /// The vectors of lanes in which the passes of some rays are started.
   std::uint64_t starts(UnitKind kind, std::uint64_t passes, const TestedRays& of) {
-    passes_[kind] += passes;
+    count(kind, passes);
     return lanes_.starts(passes, of);
   }
   std::uint64_t starts(UnitKind kind, const IntersectionCounts& counts, const TestedRays& of) {
@@ -249,8 +262,8 @@ class Tester {
     using Blocks = TestersConfig::BundleBlocks;
     const UnitKind kind = blocks_ == Blocks::kShared ? UnitKind::kBox : UnitKind::kBundle;
     const std::uint64_t first = blocks_ == Blocks::kPairs ? passes.at_once : passes.first;
-    passes_[kind] += first + passes.second;
-    passes_[UnitKind::kReciprocal] += std::uint64_t{passes.divided_before} + passes.divided_after;
+    count(kind, first + passes.second);
+    count(UnitKind::kReciprocal, std::uint64_t{passes.divided_before} + passes.divided_after);
     UnitBank& divider = banks_[UnitKind::kReciprocal];
     UnitBank::Reservation divided = tested(divider, read, passes.divided_before);
     if (passes.divided_before > 0) {  // a bundle's first test needs all of its directions
@@ -307,6 +320,7 @@ class Tester {
 
   PerUnit<UnitBank> banks_;
   PerUnit<std::uint64_t> passes_{};
+  std::uint32_t used_ = 0;  // a bit for each kind that has had a pass
   UnitBank store_, primitive_store_{{1, 1, 1}}, builder_;
   Lanes lanes_;
   TestersConfig::BundleBlocks blocks_;
