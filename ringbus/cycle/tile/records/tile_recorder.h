@@ -28,6 +28,8 @@ class TileRecorder {
         trace_(id.value, steps) {}
 
   const Trace& trace() const { return trace_; }
+  /// Rays' time is accounted for.
+  bool has_times() const { return times_ != nullptr; }
   void step(Cycle now, StepKind kind, std::uint32_t packet, std::size_t rays) { trace_.note(now, kind, packet, rays); }
 
   /// The units get tracks behind those of the dispatch stage and of `contexts`.

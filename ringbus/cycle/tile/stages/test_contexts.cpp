@@ -16,7 +16,8 @@ TestContexts::TestContexts(const TileParts& parts, const TileSettings& settings,
       forwards_(settings.testers.distributor.stragglers == TestersConfig::Distributor::Stragglers::kForward),
       contexts_(static_cast<std::size_t>(settings.testers.contexts)),
       phases_(contexts_.size()),
-      visits_(parts.needs.memory(), parts.shapes, parts.tester, contexts_.size(), first_ray_user) {}
+      visits_(parts.needs.memory(), parts.shapes, parts.tester, contexts_.size(), first_ray_user,
+              parts.recorder.has_times()) {}
 
 void TestContexts::begin(std::size_t place, PacketId id, Cycle now, Cycle at, bool has_data) {
   Context& context = contexts_[place];

@@ -8,8 +8,8 @@ namespace carousel::ringbus::cycle {
 void SubtreeVisits::prepare(std::size_t context, WalkSteps& ways) {
   Visit& visit = visits_[context];
   std::swap(visit.ways, ways);
-  visit.rays = static_cast<std::uint32_t>(visit.ways.ends.size());
-  visit.times.assign(visit.rays, {});
+  left_[context] = static_cast<std::uint32_t>(visit.ways.ends.size());
+  if (timed_) visit.times.assign(left_[context], {});
   visit.inverted.clear();
 }
 
@@ -20,7 +20,7 @@ void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now, b
   std::uint64_t records = reads - ends.size() + 1;
   for (const std::uint32_t end : ends) {
     const std::uint32_t index = new_ray();
-    visits_[context].times[place].strips = end - first;
+    if (timed_) visits_[context].times[place].strips = end - first;
     rays_[index] = {first, end, static_cast<std::uint32_t>(context), place++, Ray::Phase::kBegins};
     first = end;
     const Cycle at = tester_.read(now, records);
@@ -49,8 +49,8 @@ void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
   if (ray.step == ray.end) {
     ray.phase = Ray::Phase::kFree;
     free_rays_.push_back(index);
-    visit.times[ray.place].end = now;
-    visit_ended_ |= --visit.rays == 0;
+    if (timed_) visit.times[ray.place].end = now;
+    visit_ended_ |= --left_[ray.context] == 0;
     return;
   }
   if (visit.loaded) return test(index, now);
@@ -79,7 +79,7 @@ void SubtreeVisits::test(std::uint32_t index, Cycle now) {
   ray.phase = Ray::Phase::kInTest;
   ++in_test_;
   const Cycle end = tester_.ray(at, tests);
-  visit.times[ray.place].in_test += end - now;
+  if (timed_) visit.times[ray.place].in_test += end - now;
   events_.add(now, end, index);
 }
 
@@ -139,7 +139,7 @@ void SubtreeVisits::drop(std::size_t context, Cycle now) {
       ray.phase = Ray::Phase::kDropped;  // until its event comes
     }
   }
-  visits_[context].rays = 0;
+  left_[context] = 0;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -21,18 +21,24 @@ namespace carousel::ringbus::cycle {
 /// In a treelet of the whole tree a ray takes the whole of it once and keeps it to its end, unless the visit has it.
 class SubtreeVisits {
  public:
-  /// Keeps references. Rays are users of `shapes` from `first_user` on.
+  /// Keeps references. Rays are users of `shapes` from `first_user` on. `timed`: times() are wanted.
   SubtreeVisits(const ShapeMemory& memory, ShapeBuffer& shapes, Tester& tester, std::size_t contexts,
-                ShapeBuffer::User first_user)
-      : memory_(memory), shapes_(shapes), tester_(tester), visits_(contexts), first_user_(first_user) {}
+                ShapeBuffer::User first_user, bool timed)
+      : memory_(memory),
+        shapes_(shapes),
+        tester_(tester),
+        visits_(contexts),
+        left_(contexts),
+        first_user_(first_user),
+        timed_(timed) {}
 
   /// Takes away the ways of the rays of a packet, which is in test context `context`.
   void prepare(std::size_t context, WalkSteps& ways);
   /// Starts them. `reads`: the records that the visit reads; those of its rays are the last. `loaded`: the context has
   /// all that they need, to the end of the visit.
   void begin(std::size_t context, std::uint32_t reads, Cycle now, bool loaded);
-  bool ended(std::size_t context) const { return visits_[context].rays == 0; }
-  /// What its rays did, in their order, when it has ended.
+  bool ended(std::size_t context) const { return left_[context] == 0; }
+  /// What its rays did, in their order, when it has ended; nothing where that is not wanted.
   std::span<const WalkTime> times(std::size_t context) const { return visits_[context].times; }
   /// Forgets the visit, which has begun.
   void drop(std::size_t context, Cycle now);
@@ -70,8 +76,7 @@ class SubtreeVisits {
   };
   struct Visit {
     WalkSteps ways;
-    std::uint32_t rays = 0;       // that have not ended
-    std::vector<WalkTime> times;  // by ray
+    std::vector<WalkTime> times;  // by ray, if they are wanted
     bool loaded = false;
     std::vector<Inverted> inverted;  // matrices, and when
   };
@@ -84,8 +89,10 @@ class SubtreeVisits {
   const ShapeMemory& memory_;
   ShapeBuffer& shapes_;
   Tester& tester_;
-  std::vector<Visit> visits_;  // by context
+  std::vector<Visit> visits_;        // by context
+  std::vector<std::uint32_t> left_;  // likewise: rays that have not ended
   ShapeBuffer::User first_user_;
+  bool timed_;
   std::vector<Ray> rays_;
   std::vector<std::uint32_t> free_rays_;
   std::vector<ShapeBuffer::User> others_;

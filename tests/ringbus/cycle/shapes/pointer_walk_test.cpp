@@ -27,7 +27,7 @@ struct VisitBench {
     ports.fetched = &answers;
     buffer = std::make_unique<ShapeBuffer>(config, LinkConfig{}, ports);
     tester = std::make_unique<Tester>(testers);
-    visits = std::make_unique<SubtreeVisits>(memory, *buffer, *tester, 1, 1);
+    visits = std::make_unique<SubtreeVisits>(memory, *buffer, *tester, 1, 1, false);
   }
   /// The end of a visit that begins at `at`, of rays with these ways.
   Cycle visit(Cycle at, const std::vector<std::vector<WalkStep>>& rays) {
