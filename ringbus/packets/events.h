@@ -18,7 +18,7 @@ namespace carousel::ringbus {
 enum class EventKind : std::uint8_t {
   kAdmit,     ///< `rays` new rays got slots
   kIssue,     ///< a packet left the collections of its owner with `rays` members
-  kTest,      ///< a packet's `rays` local members were tested; `tests` is their cost. 0 rays: an idle visit
+  kTest,      ///< a packet's `rays` local members were tested; `tests` are their cost. 0 rays: an idle visit
   kHop,       ///< a packet was sent on to a neighbour
   kRetire,    ///< a packet is back at its owner; `rays` memberships joined collections
   kPart,      ///< some members of a packet are, before the others; likewise
@@ -33,11 +33,11 @@ struct Event {
   std::optional<PacketId> packet = std::nullopt;
   accel::NodeKey key{};
   std::uint32_t rays = 0;
-  std::uint32_t reads = 0;                 ///< kTest: records of rays and bundles that were read
-  std::uint64_t tested = 0;                ///< kTest: rays, those of bundles included
-  std::uint32_t children = 0, misses = 0;  ///< kTest: as in TestOutcome
-  std::uint16_t depth = 0;                 ///< kTest: of `key`
-  IntersectionCounts tests{};
+  std::uint32_t reads = 0;                    ///< kTest: records of rays and bundles that were read
+  std::uint64_t tested = 0;                   ///< kTest: rays, those of bundles included
+  std::uint32_t children = 0, misses = 0;     ///< kTest: as in TestOutcome
+  std::uint16_t depth = 0;                    ///< kTest: of `key`
+  const IntersectionCounts* tests = nullptr;  ///< kTest; valid during the call only
   const BundleCounts* bundles = nullptr;      ///< kTest with bundles; valid during the call only
   std::span<const NodeCountsAtDepth> runs{};  ///< kTest: as in TestOutcome; likewise
   StallReason reason = StallReason::kNone;

@@ -32,11 +32,11 @@ void StatisticsSink::record(const Event& event) {
       s.bubbles += event.rays == 0;
       s.local_rays += event.rays;
       s.seen_rays += event.members.size();
-      s.tests += event.tests;
+      s.tests += *event.tests;
       s.reads += event.reads;
       for (const NodeCountsAtDepth& run : event.runs) add(run);
       if (event.runs.empty() && event.tested > 0)
-        add({event.depth, {1, event.tested, event.tests.box, event.tests.triangle, event.children, event.misses}});
+        add({event.depth, {1, event.tested, event.tests->box, event.tests->triangle, event.children, event.misses}});
       if (event.bundles != nullptr) {
         if (s.bundles.size() <= event.depth) s.bundles.resize(event.depth + std::size_t{1});
         s.bundles[event.depth] += *event.bundles;

@@ -101,7 +101,7 @@ TestOutcome Resource::test(Packet& packet) {
           .children = outcome.children,
           .misses = outcome.misses,
           .depth = packet.depth,
-          .tests = outcome.counts,
+          .tests = &outcome.counts,
           .bundles = outcome.bundles,
           .runs = outcome.runs,
           .members = packet.members});

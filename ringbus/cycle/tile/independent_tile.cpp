@@ -164,7 +164,7 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
           .resource = id_,
           .key = thread.strip,
           .rays = 1,
-          .tests = counts,
+          .tests = &counts,
           .members = {&member, 1}});
 }
 

@@ -14,6 +14,12 @@
 
 namespace carousel::ringbus {
 
+/// The part of IntersectionCounts that a TransformAccount charges.
+struct TransformCounts {
+  std::uint64_t transforms = 0, transforms_in_double = 0;
+  std::uint64_t inversions = 0, full_inversions = 0, inversions_in_double = 0;
+};
+
 /// Counts what it costs hardware that follows the configuration to bring a resource's rays to model space; the kernels
 /// do it anew for every strip. It belongs to one resource and is used by one thread at a time.
 class TransformAccount {
@@ -47,8 +53,8 @@ class TransformAccount {
   }
   /// Charges a visit: of the rays in `slots`, those that are not done and have to be transformed for `instance`, and
   /// one inversion for all of them.
-  IntersectionCounts charge(const RayRecord* records, std::span<const std::uint32_t> slots, std::uint32_t instance) {
-    IntersectionCounts counts;
+  TransformCounts charge(const RayRecord* records, std::span<const std::uint32_t> slots, std::uint32_t instance) {
+    TransformCounts counts;
     if (!moves(instance)) return counts;
     for (const std::uint32_t slot : slots)
       if ((records[slot].tag.flags & kRayDone) == 0) counts.transforms += needs(slot, instance);
@@ -66,7 +72,8 @@ class TransformAccount {
   bool in_double(std::uint32_t instance) const { return accel_.instances[instance].transform.promoted; }
   /// Counts one inversion if the inverse has to be computed before rays are transformed. A transpose needs no
   /// computing. Instances whose rays are transformed in double take the two steps.
-  void invert(std::uint32_t instance, IntersectionCounts& counts) const {
+  template <class Counts>
+  void invert(std::uint32_t instance, Counts& counts) const {
     counts.inversions = forward_ && !accel_.instances[instance].transform.transposed;
     counts.full_inversions = full_ && !in_double(instance) ? counts.inversions : 0;
     counts.inversions_in_double = in_double(instance) ? counts.inversions : 0;

@@ -52,7 +52,7 @@ class TransformCharge {
 
  private:
   bool accounted_;
-  IntersectionCounts charged_;
+  TransformCounts charged_;
 };
 
 }  // namespace carousel::ringbus

@@ -194,7 +194,7 @@ IntersectionCounts WarpTile::test(std::uint32_t slot, accel::NodeKey strip, Cycl
   }
   const PacketMember member{ray.id, 0};
   record(
-      {.kind = EventKind::kTest, .resource = id_, .key = strip, .rays = 1, .tests = counts, .members = {&member, 1}});
+      {.kind = EventKind::kTest, .resource = id_, .key = strip, .rays = 1, .tests = &counts, .members = {&member, 1}});
   return counts;
 }
 
