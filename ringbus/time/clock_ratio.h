@@ -24,9 +24,10 @@ class ClockRatio {
     synchroniser_ = core == network ? 0 : static_cast<Cycle>(synchroniser_cycles);
   }
 
-  /// The first edge of the network's clock that is not before an edge of the resources', and the other way.
-  Cycle to_network(Cycle core) const { return ceil_div(core * network_, core_); }
-  Cycle to_core(Cycle network) const { return ceil_div(network * core_, network_); }
+  /// The first edge of the network's clock that is not before an edge of the resources', and the other way. Divisions
+  /// are slow, and most clocks are equal.
+  Cycle to_network(Cycle core) const { return equal() ? core : ceil_div(core * network_, core_); }
+  Cycle to_core(Cycle network) const { return equal() ? network : ceil_div(network * core_, network_); }
   /// The last edge of the resources' clock that is not after an edge of the network's.
   Cycle before(Cycle network) const { return network * core_ / network_; }
   /// The last edge of the network's clock that is not after an edge of the resources'.

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "core/config/fields/topology.h"
+#include "core/numeric/divisor.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -18,12 +19,12 @@ class SideWire {
 
   /// Takes a message of `bytes`, at least one, that is there in cycle `now`. Returns the cycle in which it has arrived.
   Cycle send(std::uint64_t bytes, Cycle now) {
-    free_at_ = std::max(free_at_, now) + ceil_div(bytes, width_);
+    free_at_ = std::max(free_at_, now) + width_.ceiling(bytes);
     return free_at_ - 1 + latency_;
   }
 
  private:
-  std::uint64_t width_;
+  Divisor width_;
   Cycle latency_;
   Cycle free_at_ = 0;
 };

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/numeric/divisor.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
@@ -35,7 +36,7 @@ class ShapePort {
     if (others != 0) [[unlikely]] {
       message.others = others;
       message.wanted = span.bytes;
-      message.skipped = static_cast<std::uint32_t>(span.address % line_bytes_);
+      message.skipped = static_cast<std::uint32_t>(line_bytes_.remainder(span.address));
     }
     requests_.send(wire_.send(message.bytes(), now), message);
     lines_ += message.lines;
@@ -46,7 +47,7 @@ class ShapePort {
   void write(const ShapeSpan& span, Cycle now) {
     FetchRequest message = lines_of(span);
     message.written = span.bytes;
-    message.skipped = static_cast<std::uint32_t>(span.address % line_bytes_);
+    message.skipped = static_cast<std::uint32_t>(line_bytes_.remainder(span.address));
     requests_.send(wire_.send(message.bytes(), now), message);
   }
   /// The time at which the next answer comes.
@@ -63,14 +64,16 @@ class ShapePort {
   };
 
   FetchRequest lines_of(const ShapeSpan& span) const {
-    const std::uint64_t first = span.address / line_bytes_, last = (span.address + span.bytes - 1) / line_bytes_;
+    const std::uint64_t first = line_bytes_.quotient(span.address),
+                        last = line_bytes_.quotient(span.address + span.bytes - 1);
     return {first, static_cast<std::uint32_t>(last - first + 1)};
   }
 
   Channel<FetchRequest>& requests_;
   Channel<FetchAnswer>& answers_;
   SideWire wire_;
-  std::uint64_t line_bytes_, lines_ = 0;
+  Divisor line_bytes_;
+  std::uint64_t lines_ = 0;
   std::vector<HintPort> hints_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "core/config/fields/testers.h"
+#include "core/numeric/divisor.h"
 #include "ringbus/results/slice_log.h"
 #include "ringbus/time/clock.h"
 #include "ringbus/time/fifo.h"
@@ -26,7 +27,7 @@ class UnitBank {
   /// Takes the bank for `tests`, as soon as it is free but not before `at`. No tests take no time.
   Reservation reserve(Cycle at, std::uint64_t tests) {
     if (tests == 0) return {at, at};
-    const Cycle start = std::max(at, free_at_), length = ceil_div(tests, units_) * interval_;
+    const Cycle start = std::max(at, free_at_), starts = units_.ceiling(tests), length = starts * interval_;
     if (start > free_at_) {
       if (free_at_ > begun_) spans_.push_back({begun_, free_at_});
       begun_ = start;
@@ -34,7 +35,7 @@ class UnitBank {
     free_at_ = start + length;
     busy_ += length;
     tests_ += tests;
-    spare_ = ceil_div(tests, units_) * units_ - tests;
+    spare_ = starts * units_.value() - tests;
     return {start + latency_, free_at_ - interval_ + latency_};
   }
   /// As reserve(), but units that the previous tests leave idle in their last cycle are taken first, since single rays
@@ -92,11 +93,12 @@ class UnitBank {
   Cycle busy() const { return busy_; }        ///< cycles taken over all time, as far as tests have been reserved
   /// Cycles of all units together that the tests took: at most busy() times the units.
   Cycle worked() const { return tests_ * interval_; }
-  Cycle units() const { return units_; }
+  Cycle units() const { return units_.value(); }
   std::uint64_t tests() const { return tests_; }
 
  private:
-  Cycle units_, interval_, latency_;
+  Divisor units_;
+  Cycle interval_, latency_;
   Cycle free_at_ = 0, busy_ = 0;
   std::uint64_t tests_ = 0, spare_ = 0;  // spare: units left idle when the last tests started
   // For busy_before(): busy times that may end in the future, of which [begun_, free_at_) is the last.

@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "core/numeric/divisor.h"
+
 namespace carousel {
 namespace {
 
@@ -52,6 +54,18 @@ TEST(FixedPoint, SumsAreClampedLikeTerms) {
 TEST(FixedPoint, MeanIsRoundedOnce) {
   EXPECT_EQ(mean_of_fixed_point(3 * (std::int64_t{1} << 28), 4), 0.75f);
   EXPECT_EQ(mean_of_fixed_point(1, 1), 0x1p-28f);
+}
+
+TEST(Divisor, DividesAsTheOperatorsDo) {
+  for (const std::uint64_t by : {1ull, 2ull, 3ull, 12ull, 64ull, 1000ull, 1ull << 40}) {
+    const Divisor divisor(by);
+    EXPECT_EQ(divisor.value(), by);
+    for (const std::uint64_t n : {0ull, 1ull, 2ull, 11ull, 12ull, 13ull, 63ull, 64ull, 65ull, (1ull << 62) - 1}) {
+      EXPECT_EQ(divisor.quotient(n), n / by) << n << " / " << by;
+      EXPECT_EQ(divisor.remainder(n), n % by) << n << " % " << by;
+      EXPECT_EQ(divisor.ceiling(n), n / by + (n % by > 0)) << n << " / " << by;
+    }
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/config/fields/memory.h"
+#include "core/numeric/divisor.h"
 #include "core/statistics/cache_counts.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/time/clock.h"
@@ -41,8 +42,8 @@ class CacheBanks {
   CacheBank& of(std::uint64_t line) { return banks_.size() == 1 ? banks_[0] : banks_[line / parts_ % banks_.size()]; }
   /// Takes a port of the bank for the next line. Returns the end of the cycle in which it is looked up.
   Cycle take_port(CacheBank& bank, Cycle now) {
-    bank.looked_up = std::max(bank.looked_up, now * port_lines_) + 1;
-    const Cycle end = ceil_div(bank.looked_up, port_lines_);
+    bank.looked_up = std::max(bank.looked_up, now * port_lines_.value()) + 1;
+    const Cycle end = port_lines_.ceiling(bank.looked_up);
     counts_.port_waits += end > now + 1;
     counts_.port_busy += end > bank.busy_until;
     bank.busy_until = end;
@@ -53,9 +54,9 @@ class CacheBanks {
 
  private:
   std::vector<CacheBank> banks_;
-  std::uint64_t parts_;       // lines of the messages in a line of the cache
-  std::uint64_t port_lines_;  // a cycle
-  std::uint64_t mshrs_;       // miss registers of a bank; 0: no bound
+  std::uint64_t parts_;  // lines of the messages in a line of the cache
+  Divisor port_lines_;   // a cycle
+  std::uint64_t mshrs_;  // miss registers of a bank; 0: no bound
   CacheCounts& counts_;
 };
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/numeric/divisor.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -19,12 +20,12 @@ class LineCache {
       : ways_(ways),
         sets_(std::max<std::uint64_t>(1, bytes / line_bytes / ways)),
         parts_(parts),
-        lines_(sets_ * ways_, kEmpty),
-        states_(parts > 1 || keeps_writes ? sets_ * ways_ : 0) {}
+        lines_(sets_.value() * ways_, kEmpty),
+        states_(parts > 1 || keeps_writes ? sets_.value() * ways_ : 0) {}
 
   /// Returns whether `part` is there, and makes its line, if it has any part, the last to be replaced.
   bool touch(std::uint64_t part) {
-    const std::uint64_t line = line_of(part), first = line % sets_ * ways_;
+    const std::uint64_t line = line_of(part), first = sets_.remainder(line) * ways_;
     for (std::uint64_t i = 0; i < ways_; ++i) {
       if (lines_[first + i] != line) continue;
       to_front(first, i);
@@ -35,7 +36,7 @@ class LineCache {
   /// The parts that are there, in each set the line that is replaced next first.
   std::vector<std::uint64_t> lines() const {
     std::vector<std::uint64_t> out;
-    for (std::uint64_t set = 0; set < sets_; ++set)
+    for (std::uint64_t set = 0; set < sets_.value(); ++set)
       for (std::uint64_t i = (set + 1) * ways_; i-- > set * ways_;)
         for (std::uint64_t p = 0; p < parts_ && lines_[i] != kEmpty; ++p)
           if (states_.empty() || (states_[i].here >> p & 1) != 0) out.push_back(lines_[i] * parts_ + p);
@@ -47,7 +48,7 @@ class LineCache {
   };
   /// The part comes; its line replaces another, if none of its parts was there.
   Replaced insert(std::uint64_t part) {
-    const std::uint64_t line = line_of(part), first = line % sets_ * ways_;
+    const std::uint64_t line = line_of(part), first = sets_.remainder(line) * ways_;
     std::uint64_t i = 0;
     while (i + 1 < ways_ && lines_[first + i] != line) ++i;
     const bool replaces = lines_[first + i] != line;
@@ -69,7 +70,7 @@ class LineCache {
     for (State& state : states_) state.written = 0;
   }
   /// The part, which has just been touched or inserted, is written.
-  void written(std::uint64_t part) { states_[line_of(part) % sets_ * ways_].written |= bit(part); }
+  void written(std::uint64_t part) { states_[sets_.remainder(line_of(part)) * ways_].written |= bit(part); }
 
  private:
   static constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
@@ -89,7 +90,9 @@ class LineCache {
     if (!states_.empty()) shift(&states_[first], i);
   }
 
-  std::uint64_t ways_, sets_, parts_;
+  std::uint64_t ways_;
+  Divisor sets_;
+  std::uint64_t parts_;
   std::vector<std::uint64_t> lines_;  // by set, most recently used first
   std::vector<State> states_;         // by line; empty if a line comes as a whole and is never written here
 };
