@@ -24,7 +24,8 @@ void ResourceTimes::begin_heard_visit(const PacketHistory& history, Cycle since,
 
 Cycle ResourceTimes::tested(std::uint32_t slot, const RayTag& tag, std::uint32_t joined, Cycle now) {
   Slot& ray = slots_[slot];
-  RayTimeTable::Row& row = table_.of(tag);
+  const std::size_t index = RayTimeTable::index_of(tag);
+  RayTimeTable::Row& row = table_.at(index);
   const auto add = [&](RayStage stage, Cycle cycles) { row[static_cast<std::size_t>(stage)] += cycles; };
   // The low half of the cycle says it all, since it was less than 2^32 cycles ago.
   const Cycle at = now - (static_cast<std::uint32_t>(now) - joined), issued = visited_->begun();
@@ -35,19 +36,29 @@ Cycle ResourceTimes::tested(std::uint32_t slot, const RayTag& tag, std::uint32_t
   }
   ray.under_way = true;
   constexpr auto kInTest = static_cast<std::size_t>(RayStage::kTest);
-  const std::uint64_t before = row[kInTest];
+  Cycle in_test = whole_[kInTest];
   if (from <= issued) {
     add(RayStage::kCollection, issued - from);
-    for (const std::uint8_t i : stages_) row[i] += whole_[i];
+    if (index != whole_row_) add_whole();
+    whole_row_ = index;
+    ++whole_rays_;
   } else {
+    const std::uint64_t before = row[kInTest];
     visited_->since(from, resource_, add);
+    in_test = row[kInTest] - before;
   }
-  const Cycle in_test = row[kInTest] - before;
   ray.in_test += in_test;
   ++ray.tests;
   ray.hops += visited_->hops();
   ray.since = now;
   return in_test;
+}
+
+void ResourceTimes::add_whole() {
+  if (whole_rays_ == 0) return;
+  RayTimeTable::Row& row = table_.at(whole_row_);
+  for (const std::uint8_t i : stages_) row[i] += whole_rays_ * whole_[i];
+  whole_rays_ = 0;
 }
 
 void ResourceTimes::walked(std::uint32_t slot, const RayTag& tag, std::uint32_t strips, Cycle of, Cycle test,

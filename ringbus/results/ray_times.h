@@ -42,8 +42,11 @@ class RayTimeTable {
  public:
   using Row = std::array<std::uint64_t, kCounters<RayStageCounts>.size()>;
 
-  Row& of(const RayTag& tag) {
-    const std::size_t index = std::size_t{tag.bounce} * kRayKinds + static_cast<std::size_t>(tag.kind);
+  static std::size_t index_of(const RayTag& tag) {
+    return std::size_t{tag.bounce} * kRayKinds + static_cast<std::size_t>(tag.kind);
+  }
+  Row& of(const RayTag& tag) { return at(index_of(tag)); }
+  Row& at(std::size_t index) {
     if (index >= rows_.size()) rows_.resize(index + 1);
     return rows_[index];
   }
@@ -76,13 +79,15 @@ class ResourceTimes {
     table_.leave(tag, RayStage::kSlot, now);
   }
 
-  /// Members of a packet that live here have been tested. Its history ends with that, at `now` of tested().
+  /// Members of a packet that live here have been tested. Its history ends with that, at `now` of tested(). end_visit()
+  /// follows.
   void begin_visit(const PacketHistory& history);
   /// The same of a packet that others hear at the same time: its history, which they read, ends on the medium.
   /// `since`, `begun`: it took a context, and its tests began.
   void begin_heard_visit(const PacketHistory& history, Cycle since, Cycle begun, Cycle now);
   /// One of these members. `joined`: as in PacketMember. Returns its cycles in test since the test before.
   Cycle tested(std::uint32_t slot, const RayTag& tag, std::uint32_t joined, Cycle now);
+  void end_visit() { add_whole(); }
 
   /// Without packets: the ray has been in `stage` since what was noted last. Its test, in the future as yet, may end at
   /// `until`.
@@ -111,6 +116,8 @@ class ResourceTimes {
   const RayTimeTable& table() const { return table_; }
 
  private:
+  void add_whole();
+
   std::uint32_t resource_;
   std::vector<Slot> slots_;
   RayTimeTable table_;
@@ -120,6 +127,9 @@ class ResourceTimes {
   // any.
   RayTimeTable::Row whole_{};
   std::vector<std::uint8_t> stages_;
+  // Such rays one after another, of one row, for which it has yet to be added.
+  std::size_t whole_row_ = 0;
+  std::uint64_t whole_rays_ = 0;
 };
 
 /// The ledger of all rays' time: a part for each resource, one for shading, and the histories of all packets.

@@ -52,6 +52,7 @@ void TileRecorder::note_tested_rays(PacketId id, std::span<const PacketMember> m
     const WalkTime& walk = walks[ray++];
     times_->walked(slot, tag, walk.strips, in_test, walk.in_test, now - walk.end);
   }
+  times_->end_visit();
 }
 
 void TileRecorder::note_admitted(std::span<const RayId> rays, Cycle now) {
