@@ -232,10 +232,10 @@ class Channel : public AnyChannel {
   std::atomic<std::size_t> sent_{0};
   std::uint64_t bytes_sent_ = 0;
   Cycle* wake_ = &unconnected_;
-  Cycle unconnected_ = kNever;
-  std::size_t blocks_ = 1;
-  Cycle last_sent_ = 0;                      // arrival of the last thing, in checked builds
   std::unique_ptr<const ClockRatio> there_;  // null: one clock
+  std::size_t blocks_ = 1;
+  Cycle unconnected_ = kNever;
+  Cycle last_sent_ = 0;  // arrival of the last thing, in checked builds; behind the line of what sending needs
   [[no_unique_address]] mutable std::conditional_t<Returns, Heard, Nothing> returns_;
 };
 

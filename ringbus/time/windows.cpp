@@ -240,11 +240,12 @@ class WindowRun {
       take_announcements(wakeups_.row_beside(thread, from), wake,
                          [&](std::size_t i, Cycle at) { agents[i]->notify(at); });
     }
+    poll(agents, schedule);
     Cycle first = kNever;
-    for (std::size_t i = 0; i < wake.size(); ++i) {
-      if (schedule.polled[i]) wake[i] = std::min(wake[i], agents[i]->unannounced());
-      first = std::min(first, schedule.cycle_of(i, wake[i]));
-    }
+    if (schedule.clocks.empty())
+      for (const Cycle at : wake) first = std::min(first, at);
+    else
+      for (std::size_t i = 0; i < wake.size(); ++i) first = std::min(first, schedule.cycle_of(i, wake[i]));
     return first;
   }
   /// `row` may be empty: nothing is announced there.
@@ -281,9 +282,10 @@ class WindowRun {
   /// Returns how many agents had something to do.
   std::uint64_t run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle begin, Cycle end) {
     std::uint64_t runs = 0;
+    const bool one_clock = schedule.clocks.empty();
     try {
       for (std::size_t i = 0; i < agents.size(); ++i) {
-        const Cycle own_end = schedule.edge_at(i, end);
+        const Cycle own_end = one_clock ? end : schedule.edge_at(i, end);
         if (schedule.wake[i] >= own_end) continue;
         if (kChecked && agents[i]->next() < schedule.edge_at(i, begin)) throw_not_woken();
         ++runs;

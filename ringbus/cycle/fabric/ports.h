@@ -87,10 +87,14 @@ class OutPortOf {
   OutPortOf(WireOf<T>& wire, Cycle latency, std::uint32_t depth, std::size_t places)
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
   /// From now on the link has faults.
-  void fail(const LinkFaultTimer& faults) { faults_ = std::make_unique<LinkFaultTimer>(faults); }
+  void fail(const LinkFaultTimer& faults) {
+    faults_ = std::make_unique<LinkFaultTimer>(faults);
+    plain_ = false;
+  }
   /// The link goes by another clock than its sender; its latency is by its own. Without faults.
   void cross(const ClockRatio& to_link, Cycle node_cycles) {
     near_ = std::make_unique<NearClock>(NearClock{to_link, node_cycles});
+    plain_ = false;
   }
   /// From now on the packets that it sends are noted.
   void record(const LinkRecorder& recorder) { recorder_ = recorder; }
@@ -210,10 +214,8 @@ class OutPortOf {
   [[gnu::always_inline]] void start(const T& token, Cycle now, bool cut_through) {
     const Cycle cycles = token.link_cycles;
     Flight flight{now + latency_ + (cut_through ? 0 : cycles - 1), now + cycles, cycles};
-    if (faults_) [[unlikely]]
-      flight = uncertain_flight(now, cycles, cut_through);
-    else if (near_) [[unlikely]]
-      flight = crossing_flight(now, cycles, cut_through);
+    if (!plain_) [[unlikely]]
+      flight = faults_ ? uncertain_flight(now, cycles, cut_through) : crossing_flight(now, cycles, cut_through);
     free_at_ = flight.link_free;
     wire_->packets.send(flight.arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
@@ -246,6 +248,7 @@ class OutPortOf {
   WireOf<T>* wire_;
   Cycle latency_;
   std::uint32_t credits_;
+  bool plain_ = true;  // neither faults_ nor near_
   std::size_t places_, reserved_ = 0;
   Fifo<Entry> queue_;
   Cycle free_at_ = 0, busy_ = 0, stalled_ = 0;

@@ -121,7 +121,7 @@ void Tile::end_step(Cycle now) {
     completions_.port().notify(CompletedRays::Note::kDrained, now);
   // Dispatch takes nothing up then; packets in test are finished.
   if (const Cycle pause = fault_.pauses(sink_.statistics()); pause > 0) dispatch_.pause(now, pause);
-  help_.notify(now, contexts_.all_free() && (issue_.empty() || issue_.front_is_ready()));
+  if (help_.on()) help_.notify(now, contexts_.all_free() && (issue_.empty() || issue_.front_is_ready()));
   issue_.look_ahead();
   due_.start = contexts_.next_start_after(now);
   due_.here = next_here();

@@ -60,10 +60,8 @@ void CollectionStore::begin_to_wait(std::uint32_t index) {
   waiting_.push_back({now_, index, ++collections_[index].waits});
 }
 
-void CollectionStore::ripen(std::uint64_t now) {
-  now_ = now;
-  if (settings_.ripe_after == 0) return;
-  for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now; waiting_.pop_front()) {
+void CollectionStore::ripen() {
+  for (std::optional<std::uint64_t> at; (at = next_ripe()) && *at <= now_; waiting_.pop_front()) {
     Collection& c = collections_[waiting_.front().collection];
     c.ripe = true;
     relist(waiting_.front().collection, c.ready);

@@ -79,7 +79,10 @@ class CollectionStore {
 
   /// The time is `now`, also for ages(): collections that have waited for Settings::ripe_after become ready. A
   /// collection waits from its first ray on, or since rays were taken from it.
-  void ripen(std::uint64_t now);
+  void ripen(std::uint64_t now) {
+    now_ = now;
+    if (settings_.ripe_after > 0) ripen();
+  }
   /// The time at which the next collection will be ready for having waited; absent if none will.
   std::optional<std::uint64_t> next_ripe();
 
@@ -127,6 +130,7 @@ class CollectionStore {
   void enlist(std::uint32_t index, std::uint32_t bucket);
   void relist(std::uint32_t index, bool was_ready);
   void begin_to_wait(std::uint32_t index);
+  void ripen();
 
   Settings settings_;
   const IssuePolicy* policy_;

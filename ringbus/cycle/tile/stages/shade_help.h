@@ -38,6 +38,8 @@ class ShadeHelp {
     done_ = kNever;
     return shaded_ = true;
   }
+  /// The resource helps.
+  bool on() const { return jobs_ != nullptr; }
   /// Sends a note at the end of a step, if there is anything to note.
   void notify(Cycle now, bool idle) {
     if (jobs_ == nullptr || stopped_ || holds() || (!shaded_ && idle == told_idle_)) return;
