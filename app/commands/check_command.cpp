@@ -59,8 +59,8 @@ void add_list(std::string& out, const char* key, const Json& items, const Json& 
 }
 
 /// The section `topology` of a network as a graph, whatever its shape: YAML that can stand in its place in a file.
-std::string graph_yaml(const TopologyConfig& config) {
-  const ringbus::DrawnShape drawn = ringbus::draw_shape(config);
+std::string graph_yaml(const TopologyConfig& config, bool traffic) {
+  const ringbus::DrawnShape drawn = ringbus::draw_shape(config, traffic);
   Config whole, plain;
   whole.topology = drawn.config;
   plain.topology.nodes.emplace_back();
@@ -81,8 +81,8 @@ std::string graph_yaml(const TopologyConfig& config) {
 }
 
 /// The ways of a graph under uniform traffic.
-std::string graph_facts_text(const TopologyConfig& config) {
-  const ringbus::GraphFacts facts = ringbus::graph_facts(config);
+std::string graph_facts_text(const TopologyConfig& config, bool traffic) {
+  const ringbus::GraphFacts facts = ringbus::graph_facts(config, traffic);
   std::string out = fmt::format("graph: {} resources, {}, {} links of one way\n", facts.resources,
                                 facts.bus.empty() ? fmt::format("{} routers", facts.routers) : "a bus", facts.links);
   out += facts.served;
@@ -104,7 +104,8 @@ std::string graph_facts_text(const TopologyConfig& config) {
 
 int print_graph(const CheckArguments& arguments) {
   const LocatedConfig located = load_config(read_config_file(arguments.config), arguments.sets, {.force = true});
-  print_result(graph_yaml(located.config.topology));
+  const bool traffic = located.config.workload.kind == WorkloadConfig::Kind::kTraffic;
+  print_result(graph_yaml(located.config.topology, traffic));
   return kDone;
 }
 
@@ -127,7 +128,7 @@ std::string check_text(const Prepared& p, const ringbus::DeadlockVerdict& verdic
   if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty())
     text += fmt::format("ignored: {}\n", ignored_text(ignored));
   if (p.config().topology.shape == TopologyShape::kGraph) {
-    text += graph_facts_text(p.config().topology);
+    text += graph_facts_text(p.config().topology, p.config().workload.kind == WorkloadConfig::Kind::kTraffic);
     text += ringbus::parcel_facts(ringbus::plan_parcels(p.config().topology, p.config().memory.line_bytes));
   }
   text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "core/config/config.h"
+#include "core/config/graph/lane_rings.h"
 #include "core/config/graph/ring.h"
 #include "core/config/key_conditions.h"
 
@@ -110,6 +111,19 @@ inline constexpr Condition kQueuedStops{
 inline constexpr Condition kQueuedPorts{
     [](const C& c, const S&) { return meets_rays(c) || !config::lone_stop_ring_entry(c.topology).has_value(); },
     "nothing waits on a ring with stops"};
+// Where links have virtual channels, these keep synthetic packets from stopping one another, if anything does.
+inline constexpr Condition kFlowRule{
+    [](const C& c, const S&) {
+      return meets_rays(c) || c.workload.kind != WorkloadKind::kTraffic || config::keeps_lanes(c.topology) ||
+             (c.topology.shape != TopologyShape::kGraph && c.topology.shape != TopologyShape::kHierarchical);
+    },
+    "synthetic packets on a graph follow no such rule, but with topology.channels: none"};
+inline constexpr Condition kWays{[](const C& c, const S&) {
+                                   const bool traffic = c.workload.kind == WorkloadKind::kTraffic;
+                                   return !config::lone_stop_ring_entry(c.topology).has_value() &&
+                                          !(traffic && config::keeps_lanes(c.topology));
+                                 },
+                                 "packets go round the rings"};
 inline constexpr Condition kSeveralParts{
     [](const C& c, const S&) { return meets_rays(c) || !config::lone_stop_ring_entry(c.topology).has_value(); },
     "the stops of a ring are clocked together, on one thread"};

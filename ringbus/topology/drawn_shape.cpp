@@ -78,7 +78,7 @@ void draw_bridges(std::int64_t resources, std::int64_t groups, TopologyConfig& o
 
 }  // namespace
 
-DrawnShape draw_shape(const TopologyConfig& config) {
+DrawnShape draw_shape(const TopologyConfig& config, bool traffic) {
   DrawnShape out{config, true, ""};
   if (config.shape == TopologyShape::kGraph) return out;
   const bool links = config.resources > 1;
@@ -91,6 +91,10 @@ DrawnShape draw_shape(const TopologyConfig& config) {
   out.config.tour = Tour::kNames;
   out.config.root.clear();
   out.config.ways.clear();
+  if (traffic && config.shape != TopologyShape::kHierarchical) {
+    out.config.channels = ChannelRule::kNone;
+    out.config.link.virtual_channels = 1;
+  }
   switch (config.shape) {
     case TopologyShape::kRing:
       if (links) out.config.links = {ring_of("r[*]")};

@@ -14,7 +14,7 @@ struct DrawnShape {
 };
 
 /// Draws a shape. The graph names its resources r[0] and on, a hierarchical network's bridges bridge[0] and on, a bus
-/// bus, and a central machine unit.
-DrawnShape draw_shape(const TopologyConfig& config);
+/// bus, and a central machine unit. `traffic`: for synthetic packets, which keep their lanes on rings.
+DrawnShape draw_shape(const TopologyConfig& config, bool traffic = false);
 
 }  // namespace carousel::ringbus

@@ -6,11 +6,13 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/lane_rings.h"
 #include "core/config/graph/ring.h"
 #include "core/system/error.h"
 #include "ringbus/topology/graph/channel_classes.h"
 #include "ringbus/topology/graph/dependencies.h"
 #include "ringbus/topology/graph/routes.h"
+#include "ringbus/topology/shapes.h"
 
 namespace carousel::ringbus {
 
@@ -67,44 +69,71 @@ std::string served_text(const Graph& graph) {
   return out + "\n";
 }
 
+/// The links of a way.
+std::size_t links_of(const Routes& routes, std::uint32_t from, std::uint32_t to) {
+  std::size_t links = 0;
+  routes.for_each_link(from, to, [&](std::uint32_t) { ++links; });
+  return links;
+}
+
+/// The lanes whose ways a packet may take: all, or those with the fewest links.
+std::vector<const Routes*> lanes_for(const std::vector<Routes>& lanes, bool shortest, std::uint32_t from,
+                                     std::uint32_t to) {
+  std::vector<const Routes*> out;
+  std::size_t least = 0;
+  for (const Routes& lane : lanes) {
+    const std::size_t links = shortest ? links_of(lane, from, to) : 0;
+    if (links < least) out.clear();
+    if (out.empty() || links == least) {
+      least = links;
+      out.push_back(&lane);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
-GraphFacts graph_facts(const TopologyConfig& config) {
+GraphFacts graph_facts(const TopologyConfig& config, bool traffic) {
   const Graph graph = draw_checked(config);
+  const bool shortest = traffic && config::keeps_lanes(config);
   GraphFacts facts;
   facts.resources = graph.resources;
   facts.routers = graph.of_kind(GraphNodeKind::kRouter).size();
   facts.links = graph.links.size();
-  for_all_pairs(graph, [&](std::uint32_t, std::uint32_t) { facts.ways += graph.lanes; });
   facts.served = served_text(graph);
   const auto bus = graph.bus();
   if (bus) facts.bus = graph.nodes[*bus].name;
+  std::vector<Routes> lanes;
+  for (std::size_t lane = 0; lane < graph.lanes; ++lane) lanes.emplace_back(graph, lane);
   std::vector<std::uint64_t> pairs(graph.links.size());
-  std::uint64_t nodes = 0;
-  std::int64_t cycles = 0;
-  const auto add_lane = [&](const Routes& routes) {
-    for_all_pairs(graph, [&](std::uint32_t from, std::uint32_t to) {
-      std::int64_t way = 0;
-      std::uint64_t links = 0;
-      ++nodes;
-      routes.for_each_link(from, to, [&](std::uint32_t link) {
-        way += graph.nodes[graph.links[link].from].drawn->latency_cycles + graph.links[link].latency_cycles;
-        ++pairs[link];
-        ++nodes;
-        ++links;
-      });
-      facts.diameter = std::max(facts.diameter, links);
-      cycles += way;
-      if (way <= facts.longest_cycles) return;
-      facts.longest_cycles = way;
-      facts.longest_from = graph.nodes[from].name;
-      facts.longest_to = graph.nodes[to].name;
+  std::vector<double> loads(graph.links.size());  // of a packet from each resource to each
+  double packets = 0, nodes = 0, cycles = 0;
+  const auto add_way = [&](const Routes& routes, std::uint32_t from, std::uint32_t to, double part) {
+    std::int64_t way = 0;
+    std::uint64_t links = 0;
+    routes.for_each_link(from, to, [&](std::uint32_t link) {
+      way += graph.nodes[graph.links[link].from].drawn->latency_cycles + graph.links[link].latency_cycles;
+      ++pairs[link];
+      loads[link] += part;
+      ++links;
     });
+    ++facts.ways;
+    facts.diameter = std::max(facts.diameter, links);
+    packets += part;
+    nodes += part * static_cast<double>(links + 1);
+    cycles += part * static_cast<double>(way);
+    if (way <= facts.longest_cycles) return;
+    facts.longest_cycles = way;
+    facts.longest_from = graph.nodes[from].name;
+    facts.longest_to = graph.nodes[to].name;
   };
-  for (std::size_t lane = 0; lane < graph.lanes; ++lane) add_lane(Routes(graph, lane));
-  const auto all = static_cast<double>(facts.ways);
-  facts.mean_nodes = static_cast<double>(nodes) / all;
-  facts.mean_cycles = static_cast<double>(cycles) / all;
+  for_all_pairs(graph, [&](std::uint32_t from, std::uint32_t to) {
+    const std::vector<const Routes*> some = lanes_for(lanes, shortest, from, to);
+    for (const Routes* lane : some) add_way(*lane, from, to, shortest ? 1.0 / static_cast<double>(some.size()) : 1.0);
+  });
+  facts.mean_nodes = nodes / packets;
+  facts.mean_cycles = cycles / packets;
   if (graph.links.empty()) return facts;
   facts.halves = narrowest_halves(graph);
   facts.halves_links = circle_text(graph, facts.halves.links);
@@ -120,7 +149,7 @@ GraphFacts graph_facts(const TopologyConfig& config) {
   // Rings side by side share the ways between their stops.
   const auto load = [&](std::uint32_t link) {
     const std::int64_t rings = config.links[graph.links[link].entry].stops.rings;
-    return static_cast<double>(pairs[link]) / static_cast<double>(graph.links[link].bytes_per_cycle * rings);
+    return loads[link] / static_cast<double>(graph.links[link].bytes_per_cycle * rings);
   };
   const auto ends = [&](std::uint32_t link) { return std::tuple(graph.links[link].from, graph.links[link].to); };
   for (std::uint32_t link = 1; link < graph.links.size(); ++link)
@@ -134,7 +163,7 @@ GraphFacts graph_facts(const TopologyConfig& config) {
     load_of_busiest = static_cast<double>(facts.busiest_pairs) / static_cast<double>(config.link.bytes_per_cycle);
   }
   if (facts.busiest_pairs > 0)
-    facts.bound = static_cast<double>(facts.ways) / static_cast<double>(graph.resources) /
+    facts.bound = packets / static_cast<double>(graph.resources) /
                   (load_of_busiest * static_cast<double>(config.link.bytes_per_cycle));
   return facts;
 }
@@ -178,6 +207,7 @@ std::string stop_rings_text(const Graph& graph, const std::vector<config::StopRi
 }
 
 DeadlockVerdict traffic_verdict(const TopologyConfig& config) {
+  if (config::keeps_lanes(config)) return plan_traffic(config).verdict;
   const Graph graph = draw_checked(config);
   const std::vector<config::StopRing> rings = config::stop_rings(config, graph);
   if (config::lone_stop_ring_entry(config)) return {false, stop_rings_text(graph, rings)};
@@ -199,7 +229,7 @@ DeadlockVerdict traffic_verdict(const TopologyConfig& config) {
   if (plan.rule == ChannelRule::kAny)
     return {true, full +
                       "; on a graph no rule keeps synthetic traffic from that, but virtual channels under "
-                      "topology.channels: dateline would"};
+                      "topology.channels: dateline would, and on rings topology.flow under topology.channels: none"};
   const ChannelDependencies channels = channel_dependencies(graph, routes, plan);
   const std::vector<std::uint32_t> left =
       channels.waits.smallest_circle(std::vector<std::uint64_t>(channels.link_of.size(), 1), 2);

@@ -45,7 +45,8 @@ struct GraphFacts {
   std::optional<double> wire_mm;  ///< of all links together, where all nodes have places
   double wire_bit_mm = 0;         ///< likewise, each times its bits
 };
-GraphFacts graph_facts(const TopologyConfig& config);
+/// `traffic`: packets that keep their lanes take one with the fewest links, and of several each in turn.
+GraphFacts graph_facts(const TopologyConfig& config, bool traffic = false);
 
 /// Why rings whose stops have no queues cannot stop by themselves, and whether one of their stops may wait for ever.
 std::string stop_rings_text(const config::Graph& graph, const std::vector<config::StopRing>& rings);

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/config/fields/topology.h"
+#include "core/config/graph/lane_rings.h"
 #include "core/system/error.h"
 #include "core/types/enum_names.h"
 #include "ringbus/topology/drawn_shape.h"
@@ -35,14 +36,8 @@ constexpr std::array kShapes{
     Shape{TopologyShape::kGraph, plan_graph},
 };
 
-}  // namespace
-
-TopologyPlan plan_topology(const TopologyConfig& config) {
-  const auto found =
-      std::find_if(kShapes.begin(), kShapes.end(), [&](const Shape& shape) { return shape.shape == config.shape; });
-  if (found == kShapes.end())
-    throw SimulationError(fmt::format("topology.shape: there is no plan of {}", enum_name(config.shape)));
-  TopologyPlan plan = found->plan(config);
+/// Fills in what is so of every plan.
+TopologyPlan completed(TopologyPlan plan, const TopologyConfig& config) {
   if (config.resources == 1) {
     plan.wires.clear();
     plan.hubs.clear();
@@ -56,6 +51,20 @@ TopologyPlan plan_topology(const TopologyConfig& config) {
     if (wire.bytes_per_cycle == 0) wire.bytes_per_cycle = config.link.bytes_per_cycle;
   }
   return plan;
+}
+
+}  // namespace
+
+TopologyPlan plan_topology(const TopologyConfig& config) {
+  const auto found =
+      std::find_if(kShapes.begin(), kShapes.end(), [&](const Shape& shape) { return shape.shape == config.shape; });
+  if (found == kShapes.end())
+    throw SimulationError(fmt::format("topology.shape: there is no plan of {}", enum_name(config.shape)));
+  return completed(found->plan(config), config);
+}
+
+TopologyPlan plan_traffic(const TopologyConfig& config) {
+  return config::keeps_lanes(config) ? completed(plan_lanes(config), config) : plan_topology(config);
 }
 
 }  // namespace carousel::ringbus

@@ -7,8 +7,10 @@
 
 namespace carousel::ringbus {
 
-Topology::Topology(const TopologyConfig& config)
-    : plan_(plan_topology(config)),
+Topology::Topology(const TopologyConfig& config) : Topology(config, plan_topology(config)) {}
+
+Topology::Topology(const TopologyConfig& config, TopologyPlan plan)
+    : plan_(std::move(plan)),
       properties_(properties_of(config)),
       resources_(static_cast<std::uint32_t>(config.resources)),
       visit_all_(config.visit == Visit::kAll),

@@ -28,6 +28,8 @@ class Topology {
   using Hub = TopologyPlan::Hub;
 
   explicit Topology(const TopologyConfig& config);
+  /// `plan`: by plan_topology() or plan_traffic().
+  Topology(const TopologyConfig& config, TopologyPlan plan);
 
   /// Every link to make. None when there is only one resource, or all work independently.
   const std::vector<Wire>& wires() const { return plan_.wires; }

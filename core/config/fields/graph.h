@@ -77,11 +77,11 @@ inline constexpr auto kEnumNames<Tour> = [] {
 }();
 
 /// The rule by which a packet takes one of a link's virtual channels.
-enum class ChannelRule { kAny, kDateline, kHops };
+enum class ChannelRule { kAny, kDateline, kHops, kNone };
 template <>
 inline constexpr auto kEnumNames<ChannelRule> = [] {
   using enum ChannelRule;
-  return names<ChannelRule>({{kAny, "any"}, {kDateline, "dateline"}, {kHops, "hops"}});
+  return names<ChannelRule>({{kAny, "any"}, {kDateline, "dateline"}, {kHops, "hops"}, {kNone, "none"}});
 }();
 
 /// A part of the ways that are given: a whole way, or the next node for some nodes and destinations.

@@ -8,6 +8,7 @@
 
 #include "core/config/graph/drawn_parts.h"
 #include "core/config/graph/graph.h"
+#include "core/config/graph/lane_rings.h"
 #include "core/config/load/network_rules.h"
 
 namespace carousel::config {
@@ -183,9 +184,9 @@ void check_lanes(const Config& config, const RuleBreach& breach) {
     if (!link.lane && link.lanes == 1) continue;
     const std::string key = fmt::format("topology.links.{}.{}", i, link.lane ? "lane" : "lanes");
     const std::string_view expected = link.lane ? "auto" : "1";
-    if (config.workload.kind == WorkloadConfig::Kind::kTraffic)
-      breach(key, fmt::format("synthetic traffic has no lanes on a graph; expected {}, or topology.shape: multi_ring "
-                              "or bidirectional",
+    if (config.workload.kind == WorkloadConfig::Kind::kTraffic && c.channels != ChannelRule::kNone)
+      breach(key, fmt::format("synthetic packets have virtual channels and no lanes, or lanes and no channels; "
+                              "expected {}, or topology.channels: none",
                               expected));
     if (link.carries != GraphLink().carries)
       breach(key,
@@ -298,6 +299,8 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   if (issues.empty()) {
     check_parts(config, graph, drawn, breach);
     check_spilling(config, graph, drawn, breach);
+    if (config.workload.kind == WorkloadConfig::Kind::kTraffic && keeps_lanes(c))
+      lane_rings(c, graph.only(Carried::kPackets), issues);
     check_bus(config, graph, breach);
   }
   for (std::size_t i = 0; i < c.overrides.size(); ++i) {

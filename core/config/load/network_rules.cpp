@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/lane_rings.h"
 #include "core/config/not_built.h"
 
 namespace carousel::config {
@@ -73,10 +74,16 @@ class NetworkRules {
     if (c.verify != Verify::kNone)
       breach_("verify", fmt::format("traffic has no hits to verify; expected none, found {}", enum_name(c.verify)));
     const TrafficConfig& traffic = c.workload.traffic;
-    if (c.topology.shape == TopologyShape::kGraph && traffic.source_queues != TrafficConfig::SourceQueues::kShared)
+    if (c.topology.shape == TopologyShape::kGraph && !config::keeps_lanes(c.topology) &&
+        traffic.source_queues != TrafficConfig::SourceQueues::kShared)
       breach_("workload.traffic.source_queues",
-              fmt::format("at a node of a graph the source is one queue; expected shared, found {}",
+              fmt::format("at a node of a graph the source is one queue; expected shared, or topology.channels: none "
+                          "where it has rings; found {}",
                           enum_name(traffic.source_queues)));
+    if (c.topology.shape == TopologyShape::kHierarchical && c.topology.channels == ChannelRule::kNone)
+      breach_("topology.channels",
+              "packets change from line to line at the bridges of a hierarchical network; expected any, dateline or "
+              "hops, found none");
     if (traffic.pattern == TrafficConfig::Pattern::kHotspot && traffic.hotspot >= c.topology.resources)
       breach_("workload.traffic.hotspot",
               fmt::format("expected a resource from 0 to {}, found {}", c.topology.resources - 1, traffic.hotspot));

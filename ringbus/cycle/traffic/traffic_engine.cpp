@@ -15,6 +15,7 @@
 #include "ringbus/time/machine_clocks.h"
 #include "ringbus/time/windows.h"
 #include "ringbus/topology/drawn_shape.h"
+#include "ringbus/topology/shapes.h"
 #include "ringbus/topology/topology.h"
 
 namespace carousel::ringbus {
@@ -29,7 +30,7 @@ class TrafficRun {
   TrafficRun(const Config& config, const RunOptions& options)
       : config_(config),
         options_(options),
-        topology_(config.topology),
+        topology_(config.topology, plan_traffic(config.topology)),
         rings_(config.topology),
         flow_(config.topology.flow, topology_.direct() || topology_.routed()),
         ends_(traffic_ends(config.topology, config.workload.traffic)),

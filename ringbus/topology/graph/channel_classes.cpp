@@ -46,7 +46,7 @@ std::vector<bool> choose_datelines(const Graph& graph, const Routes& routes) {
 
 ChannelPlan plan_channels(const TopologyConfig& config, const Graph& graph, const Routes& routes) {
   ChannelPlan plan;
-  plan.rule = config.channels;
+  plan.rule = config.channels == ChannelRule::kNone ? ChannelRule::kAny : config.channels;
   for (const Graph::Link& link : graph.links) {
     plan.channels.push_back(static_cast<std::uint32_t>(link.virtual_channels));
     plan.datelines.push_back(link.dateline);

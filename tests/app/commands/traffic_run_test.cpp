@@ -1,10 +1,14 @@
+#include <array>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"
+#include "tests/app/support/same_machine.h"
 #include "tests/support/json_schema_check.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::traffic_run_test {
 namespace {
@@ -73,6 +77,64 @@ TEST(TrafficRun, HasNoHitsToWrite) {
     const Outcome outcome = program.run(arguments);
     EXPECT_EQ(outcome.status, 2);
     EXPECT_THAT(outcome.err, HasSubstr(option[0] + ": synthetic traffic has no rays"));
+  }
+}
+
+/// Shapes of some sizes with each pattern, rule and kind of queues.
+std::vector<std::vector<std::string>> networks() {
+  std::vector<std::vector<std::string>> out;
+  std::size_t turn = 0;
+  for (const char* pattern : {"uniform", "tornado", "neighbour", "hotspot", "bursty", "exchange"}) {
+    const auto add = [&](std::vector<std::string> sets) {
+      const bool even = std::string(pattern) == "exchange";
+      const std::array sizes{even ? "8" : "7", even ? "6" : "1", even ? "2" : "3"};
+      sets.push_back(std::string("topology.resources=") + sizes[turn++ % sizes.size()]);
+      sets.push_back(std::string("workload.traffic.pattern=") + pattern);
+      out.push_back(std::move(sets));
+    };
+    for (const char* shape : {"ring", "bidirectional", "multi_ring", "point_to_point"})
+      for (const char* flow : {"credits", "bubble"})
+        for (const char* queues : {"shared", "per_direction"})
+          add({std::string("topology.shape=") + shape, std::string("topology.flow=") + flow,
+               std::string("workload.traffic.source_queues=") + queues});
+    for (const char* channels : {"dateline", "hops"})
+      add({"topology.shape=hierarchical", "topology.groups=2", "topology.link.virtual_channels=16",
+           std::string("topology.channels=") + channels});
+  }
+  return out;
+}
+
+TEST(TrafficRun, EveryShapeIsItsDrawingToTheLastNumber) {
+  const Program program;
+  const std::string traffic =
+      "engine: {kind: cycle}\nworkload: {traffic: {rate: 0.5, packets: 2000, packet_bytes: 48}}\n";
+  program.write("shape.yaml", traffic + "topology: {link: {depth: 3}, rings: 2}\n");
+  std::size_t turn = 0;
+  for (const std::vector<std::string>& sets : some(networks(), 12)) {
+    SCOPED_TRACE(testing::PrintToString(sets));
+    std::vector<std::string> arguments;
+    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    const auto run = [&](std::vector<std::string> command) {
+      command.insert(command.end(), arguments.begin(), arguments.end());
+      return program.run(command);
+    };
+    const std::string one = "shape" + std::to_string(turn), two = "graph" + std::to_string(turn++);
+    const Outcome shape = run({"run", "shape.yaml", "--quiet", "--no-html", "--out", one}),
+                  drawn = run({"check", "shape.yaml", "--graph"});
+    ASSERT_EQ(shape.status, 0) << shape.err;
+    ASSERT_EQ(drawn.status, 0) << drawn.err;
+    program.write("graph.yaml", traffic + drawn.out);
+    std::erase_if(arguments, [](const std::string& set) { return set.starts_with("topology."); });
+    std::erase(arguments, "--set");
+    std::vector<std::string> command{"run", "graph.yaml", "--quiet", "--no-html", "--out", two};
+    for (const std::string& set : arguments) command.insert(command.end(), {"--set", set});
+    const Outcome graph = program.run(command);
+    const bool other = drawn.out.starts_with("# Not the same machine: two resources of the shape");
+    EXPECT_EQ(other, sets[0] == "topology.shape=point_to_point" && sets[3] == "topology.resources=2");
+    ASSERT_EQ(graph.status, 0) << graph.err << drawn.out;
+    if (!other) {
+      EXPECT_EQ(results_of(program, one), results_of(program, two)) << drawn.out;
+    }
   }
 }
 

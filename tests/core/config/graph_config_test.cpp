@@ -185,6 +185,34 @@ INSTANTIATE_TEST_SUITE_P(
             "TooManyLanes",
             "topology: {shape: graph, nodes: [{name: r, count: 2}], links: [{ring: 'r[*]', lane: 60, lanes: 5}]}\n",
             "topology.links.0.lanes: expected lanes up to 63 at most, found 60 to 64"},
+        BadConfig{"LaneOfChannels",
+                  "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]', lanes: 2}]}\n"
+                  "workload: {traffic: {}}\n",
+                  "test.yaml:3:86: topology.links.0.lanes: synthetic packets have virtual channels and no lanes, or "
+                  "lanes and no channels; expected 1, or topology.channels: none"},
+        BadConfig{"WithoutChannelsNoRing",
+                  "topology: {shape: graph, channels: none, nodes: [{name: r, count: 3}], links: [{line: 'r[*]', both: "
+                  "true}]}\nworkload: {traffic: {}}\n",
+                  "test.yaml:3:36: topology.channels: without virtual channels a packet keeps its lane, so the links "
+                  "of each lane are one ring through all resources, or a link leads from each resource to every other"},
+        BadConfig{"WithoutChannelsARouter",
+                  "topology: {shape: graph, channels: none, nodes: [{name: r, count: 3}, {name: x, kind: router}],\n"
+                  "  links: [{ring: 'r[*], x'}]}\nworkload: {traffic: {}}\n",
+                  "test.yaml:3:87: topology.nodes.1.kind: without virtual channels packets go round rings of "
+                  "resources; expected resource, or another topology.channels; found router"},
+        BadConfig{"WithoutChannelsALinkOfItsOwn",
+                  "topology: {shape: graph, channels: none, nodes: [{name: r, count: 3}],\n"
+                  "  links: [{ring: 'r[*]', latency_cycles: 9}]}\nworkload: {traffic: {}}\n",
+                  "test.yaml:4:42: topology.links.0.latency_cycles: without virtual channels all links are as "
+                  "topology.link says; expected 4, found 9"},
+        BadConfig{"WithoutChannelsAClock",
+                  "clocks: {noc: 300}\ntopology: {shape: graph, channels: none, nodes: [{name: r, count: 3}],\n"
+                  "  links: [{ring: 'r[*]'}]}\nworkload: {traffic: {}}\n",
+                  "test.yaml:4:36: topology.channels: without virtual channels packets go by the clock of the "
+                  "resources"},
+        BadConfig{"BridgesWithoutChannels",
+                  "topology: {shape: hierarchical, channels: none}\nworkload: {traffic: {}}\n",
+                  "test.yaml:3:43: topology.channels: packets change from line to line at the bridges"},
         BadConfig{"LaneOfShapes",
                   "topology: {shape: graph, nodes: [{name: r, count: 2}, {name: a, kind: cache}],\n"
                   "  links: [{ring: 'r[*]'}, {from: 'r[*]', to: a, both: true, lane: 0, carries: [shapes]}]}\n",

@@ -235,6 +235,58 @@ TEST(GraphVerdict, ADatelineThatIsGivenIsTaken) {
   EXPECT_THAT(verdict.rule, testing::HasSubstr("no dateline breaks it"));
 }
 
+TEST(GraphVerdict, WithoutChannelsItIsThatOfFlow) {
+  const auto verdict = [](const std::string& links, const std::string& keys) {
+    return traffic_verdict(drawn(6, links, "  channels: none\n" + keys)).rule;
+  };
+  EXPECT_THAT(verdict("{ring: 'r[*]'}", "  flow: bubble\n"), testing::StartsWith("bubble: "));
+  EXPECT_THAT(verdict("{ring: 'r[*]', lane: 0}, {ring: 'r[0], r[2], r[4], r[1], r[3], r[5]', lane: 1}", ""),
+              testing::StartsWith("credits: "));
+  EXPECT_THAT(verdict("{from: 'r[*]', all_to: 'r[*]'}", ""), testing::HasSubstr("always taken in"));
+}
+
+// Each packet takes the lane with the fewest links, or each of those by turns: 0, 1, 2, 3, 2 and 1 links to six others.
+TEST(GraphFacts, PacketsThatKeepTheirLanesTakeTheShorterWay) {
+  const TopologyConfig rings =
+      drawn(6, "{ring: 'r[*]', lane: 0}, {ring: 'r[5..0]', lane: 1}", "  channels: none\n  flow: bubble\n");
+  const GraphFacts facts = graph_facts(rings, true);
+  EXPECT_DOUBLE_EQ(facts.mean_nodes, 1 + 9.0 / 6);
+  EXPECT_DOUBLE_EQ(facts.mean_cycles, 4 * 9.0 / 6);
+  EXPECT_EQ(facts.diameter, 3u);
+  EXPECT_EQ(facts.longest_cycles, 12);
+  EXPECT_DOUBLE_EQ(facts.bound, 36 / 6.0 / (36 * 1.5 / 12));  // 54 links of 36 packets, over 12
+}
+
+// Three rings in orders of their own. A packet alone takes the links of the shorter way, counted here.
+TEST(Graph, APacketAloneKeepsToTheShortestLane) {
+  const std::vector<std::vector<int>> orders{{0, 1, 2, 3, 4, 5, 6}, {0, 3, 6, 2, 5, 1, 4}, {6, 4, 2, 0, 5, 3, 1}};
+  std::string links;
+  std::vector<int> hops(7, 7);  // of resource r to r + 1
+  for (std::size_t lane = 0; lane < orders.size(); ++lane) {
+    std::string names;
+    for (const int r : orders[lane]) names += fmt::format("{}r[{}]", names.empty() ? "" : ", ", r);
+    links += fmt::format("{}{{ring: '{}', lane: {}}}", lane > 0 ? ", " : "", names, lane);
+    for (int r = 0; r < 7; ++r) {
+      const auto place = [&](int of) { return std::ranges::find(orders[lane], of) - orders[lane].begin(); };
+      const auto ahead = static_cast<int>((place((r + 3) % 7) + 7 - place(r)) % 7);
+      hops[static_cast<std::size_t>(r)] = std::min(hops[static_cast<std::size_t>(r)], ahead);
+    }
+  }
+  Config config;
+  config.engine.kind = EngineKind::kCycle;
+  config.workload.kind = WorkloadConfig::Kind::kTraffic;
+  config.topology = drawn(7, links, "  channels: none\n");
+  config.workload.traffic.pattern = TrafficConfig::Pattern::kTornado;
+  config.workload.traffic.rate = 0.0005;
+  config.workload.traffic.packets = 7000;
+  const TrafficResult result = run_traffic(config, {});
+  double sum = 0;
+  for (const int one : hops) sum += one;
+  EXPECT_EQ(result.delivered, 7000u);
+  EXPECT_NEAR(result.latency.mean(), 1 + 4 * sum / 7 + 1, 0.1);
+  EXPECT_NEAR(result.latency.mean() / result.zero_load_latency(config.workload.traffic), 1, 1e-3);
+}
+
 TEST(GraphCuts, AreTheNarrowest) {
   const auto halves = [](const std::string& drawing) {
     return graph_facts(load_config({"engine: {kind: cycle}\ntopology: {shape: graph, " + drawing +

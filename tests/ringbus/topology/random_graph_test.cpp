@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -79,6 +81,61 @@ TEST(RandomGraphs, StopWhereTheVerdictSaysSo) {
   EXPECT_GT(stopped, unsafe / 2);
 }
 
+/// One to three rings through 3 to 12 resources, each in an order of its own and for the packets of a lane: `nodes` and
+/// `links`.
+std::string random_rings(RandomGraph& random) {
+  const std::uint64_t resources = 3 + random.draw(10), lanes = 1 + random.draw(3);
+  std::string text = fmt::format("  nodes: [{{name: r, count: {}}}]\n  links:\n", resources);
+  for (std::uint64_t lane = 0; lane < lanes; ++lane) {
+    std::vector<std::uint64_t> order;
+    for (std::uint64_t r = 0; r < resources; ++r)
+      order.insert(order.begin() + static_cast<std::ptrdiff_t>(random.draw(r + 1)), r);
+    std::string names;
+    for (const std::uint64_t r : order) names += fmt::format("{}r[{}]", names.empty() ? "" : ", ", r);
+    text += fmt::format("    - {{ring: '{}', lane: {}}}\n", names, lane);
+  }
+  return text;
+}
+
+// Rings without virtual channels, which the rule of topology.flow keeps from filling up.
+TEST(RandomGraphs, RingsOfLanesStopOnlyWithoutARule) {
+  const std::uint64_t seed = std::uint64_t{run_seed()} * 1'000'003;
+  int safe = 0, unsafe = 0, stopped = 0;
+  for (int i = scaled(250, 50); i > 0; --i) {
+    RandomGraph graph(seed + static_cast<std::uint64_t>(i));
+    const std::array flows{"credits", "bubble", "none"};
+    const std::string flow = flows[graph.draw(flows.size())], rings = random_rings(graph);
+    const std::uint64_t depth = (flow == "bubble" ? 2 : 1) + graph.draw(3), bytes = 32 * (1 + graph.draw(4));
+    const auto machine = [&](std::uint64_t draw) {
+      return load_config(
+                 {fmt::format("engine: {{kind: cycle}}\nimage: {{seed: {}}}\ntopology:\n  shape: graph\n  channels: "
+                              "none\n  flow: {}\n  link: {{depth: {}}}\n{}workload: {{traffic: {{rate: 1, packets: "
+                              "1500, packet_bytes: {}}}}}\n",
+                              draw, flow, depth, rings, bytes),
+                  "rings.yaml"},
+                 {}, {.force = true})
+          .config;
+    };
+    const Config config = machine(1);
+    SCOPED_TRACE(fmt::format("{}, depth {}, {} bytes\n{}", flow, depth, bytes, rings));
+    const DeadlockVerdict verdict = deadlock_verdict(config);
+    EXPECT_EQ(verdict.can_deadlock, flow == "none") << verdict.rule;
+    if (!verdict.can_deadlock) {
+      ++safe;
+      EXPECT_TRUE(ends(config)) << verdict.rule;
+      continue;
+    }
+    ++unsafe;
+    bool stops = false;  // where rings are many, ways are short, and few loads fill one
+    for (std::uint64_t attempt = 1; attempt <= 5 && !stops; ++attempt) stops = !ends(machine(attempt));
+    stopped += stops ? 1 : 0;
+  }
+  std::printf("Of rings of lanes: %d called safe came to their end; %d unsafe, of which %d were made to stop\n", safe,
+              unsafe, stopped);
+  EXPECT_GT(safe, unsafe);
+  EXPECT_GT(stopped, unsafe / 4);
+}
+
 // The engine of rays, whose packets visit resources and come home. Where the rule of topology.flow is taken away, or
 // routers have few places, circles may fill up.
 TEST(RandomGraphs, RaysComeToTheirEndWhereTheVerdictSaysSo) {
@@ -91,10 +148,14 @@ TEST(RandomGraphs, RaysComeToTheirEndWhereTheVerdictSaysSo) {
     std::string text =
         "scene: {builtin: terrain}\nengine: {kind: cycle}\nrays: {slots_per_resource: 16}\npackets: {rays: "
         "4}\ntopology:\n";
+    const bool rings = i % 3 == 0;
+    const std::string flow = pick({"credits", "bubble", "none"});
     text += fmt::format("  shape: graph\n  visit: {}\n  flow: {}\n  routes: {}\n  tour: {}\n", pick({"owners", "all"}),
-                        pick({"credits", "none"}), pick({"shortest", "up_down"}), pick({"names", "nearest"}));
-    text += fmt::format("  link: {{depth: {}}}\n", 1 + graph.draw(4));
-    text += graph.text(graph.draw(graph.nodes() / 2), pick({"", ", buffers: 1", ", buffers: 2, forward: whole"}));
+                        flow, rings ? "shortest" : pick({"shortest", "up_down"}), pick({"names", "nearest"}));
+    text += fmt::format("  link: {{depth: {}}}\n", (flow == "bubble" ? 2 : 1) + graph.draw(4));
+    text += rings
+                ? random_rings(graph)
+                : graph.text(graph.draw(graph.nodes() / 2), pick({"", ", buffers: 1", ", buffers: 2, forward: whole"}));
     SCOPED_TRACE(text);
     const Config config = load_config({text, "graph.yaml"}, {}, {.force = true}).config;
     const DeadlockVerdict verdict = deadlock_verdict(config);
