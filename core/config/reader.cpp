@@ -145,7 +145,7 @@ void Reader::on_field(std::string_view key, GraphPoint& value, RealRange range, 
   const Visit visit(*this, key);
   if (!visit.node) return;
   if (visit.node->kind != Node::Kind::kSeq || visit.node->items.size() != 2)
-    return wrong(*visit.node, "a list of x and y");
+    return wrong(*visit.node, "a list of two numbers, x and y");
   GraphPoint read{.given = true};
   double* axes[] = {&read.x, &read.y};
   for (std::size_t i = 0; i < 2; ++i) {

@@ -112,14 +112,19 @@ std::vector<std::vector<bool>> ways_of(const Graph& graph, const std::vector<std
 
 void check_ways(const Graph& graph, std::vector<GraphIssue>& issues) {
   if (graph.nodes.size() < 2) return;
-  std::vector<bool> linked(graph.nodes.size());
-  for (const Graph::Link& link : graph.links) linked[link.from] = linked[link.to] = true;
+  std::vector<bool> left(graph.nodes.size()), reached(graph.nodes.size());
+  for (const Graph::Link& link : graph.links) left[link.from] = reached[link.to] = true;
   bool all = true;
   for (std::uint32_t i = 0; i < graph.nodes.size(); ++i) {
-    if (linked[i] || (graph.stacks && i < graph.resources)) continue;
+    const bool none = !left[i] && !reached[i];
+    const bool dead_end = graph.nodes[i].drawn->kind == GraphNodeKind::kRouter && left[i] != reached[i];
+    if (!(none || dead_end) || (graph.stacks && i < graph.resources)) continue;
     all = all && i >= graph.resources;
     issues.push_back({fmt::format("topology.nodes.{}", graph.nodes[i].entry),
-                      fmt::format("{} has no link; expected one to it and one from it", graph.nodes[i].name)});
+                      fmt::format("{} has no link{}; expected one to it and one from it", graph.nodes[i].name,
+                                  none      ? ""
+                                  : left[i] ? " to it"
+                                            : " from it")});
   }
   if (!all) return;  // the ways that are missing are those
   if (graph.resources < 2 || graph.stacks) return;

@@ -176,7 +176,15 @@ class Drawing {
                                                       {"line", !link.line.empty()},
                                                       {"mesh", link.mesh.any()}};
     const auto given = std::count_if(std::begin(ways), std::end(ways), [](const auto& way) { return way.second; });
-    if (given != 1) return link_issue("", "expected one of from and to, from and all_to, ring, line or mesh");
+    if (given != 1) {
+      std::string found;
+      for (const auto& [key, is_given] : ways)
+        if (is_given) found += fmt::format("{}{}", found.empty() ? "" : " and ", key);
+      return link_issue("", fmt::format("expected one of from and to, from and all_to, ring, line or mesh, found {}",
+                                        !found.empty()      ? found
+                                        : link.from.empty() ? "none"
+                                                            : "from alone"));
+    }
     const bool starts = !link.to.empty() || !link.all_to.empty();
     if (starts == link.from.empty())
       return link_issue(starts ? "" : "from", starts
@@ -217,6 +225,9 @@ class Drawing {
     if (nodes.empty()) return;
     if (nodes.size() < 2)
       return link_issue(closed ? "ring" : "line", fmt::format("expected two nodes at least, found {}", nodes.size()));
+    for (std::size_t i = 0; i < nodes.size() && closed; ++i)
+      if (std::count(nodes.begin(), nodes.end(), nodes[i]) > 1)
+        return link_issue("ring", fmt::format("expected each node once, found {} twice", graph_.nodes[nodes[i]].name));
     for (std::size_t i = 0; i + 1 < nodes.size(); ++i) add(link, nodes[i], nodes[i + 1]);
     if (closed && !(link.both && nodes.size() == 2)) add(link, nodes.back(), nodes.front());
   }

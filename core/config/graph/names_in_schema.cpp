@@ -18,7 +18,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::int64_t kListed = 64;  // nodes of a group; the pattern takes the others
 
-/// The regular expression of the numbers up to `last`, with any zeros in front.
+/// The regular expression of the numbers up to `last`.
 std::string numbers_to(std::int64_t last) {
   const std::string digits = std::to_string(last);
   std::vector<std::string> some{digits};
@@ -29,7 +29,7 @@ std::string numbers_to(std::int64_t last) {
     for (std::size_t after = i + 1; after < digits.size(); ++after) less += "[0-9]";
     some.push_back(std::move(less));
   }
-  return fmt::format("0*(?:{})", fmt::join(some, "|"));
+  return fmt::format("{}", fmt::join(some, "|"));
 }
 
 /// The nodes that a key may name.
@@ -37,6 +37,7 @@ struct KnownNodes {
   std::vector<std::string> listed;   ///< one node each
   std::vector<std::string> groups;   ///< as a whole
   std::vector<std::string> one, of;  ///< regular expressions: of a node, and of nodes of one name
+  std::size_t ranges = 0;            ///< of `one`, each with a number that stands there twice
 
   explicit KnownNodes(const TopologyConfig& config, bool take_packets = false) {
     for (const GraphNode& node : config.nodes) {
@@ -49,8 +50,10 @@ struct KnownNodes {
       groups.push_back(node.name + "[*]");
       for (std::int64_t i = 0; i < std::min(*node.count, kListed); ++i)
         listed.push_back(fmt::format("{}[{}]", node.name, i));
-      one.push_back(fmt::format("{}\\[{}\\]", node.name, number));
-      of.push_back(fmt::format("{0}\\[(?:\\*|{1}(?:\\.\\.{1})?)\\]", node.name, number));
+      // A range of one node has the same number twice, apart from zeros in front.
+      const std::string alone = *node.count == 1 ? "\\*|" : "";
+      one.push_back(fmt::format("{}\\[(?:{}0*({})(?:\\.\\.0*\\{})?)\\]", node.name, alone, number, ++ranges));
+      of.push_back(fmt::format("{0}\\[(?:\\*|0*(?:{1})(?:\\.\\.0*(?:{1}))?)\\]", node.name, number));
     }
   }
 };

@@ -15,6 +15,17 @@ namespace carousel::config {
 
 namespace {
 
+/// Links have lengths where both of their nodes have places, so a place that was forgotten would go unnoticed.
+void check_places(const std::vector<GraphNode>& nodes, const RuleBreach& breach) {
+  const auto given = [](const GraphNode& node) { return node.at.given; };
+  if (std::ranges::none_of(nodes, given)) return;
+  const auto without = std::ranges::find_if_not(nodes, given);
+  if (without != nodes.end())
+    breach(
+        fmt::format("topology.nodes.{}", without - nodes.begin()),
+        fmt::format("other nodes have places, and {} has none; expected `at` at all nodes, or at none", without->name));
+}
+
 /// The keys of a node that its kind has.
 void check_node(const GraphNode& node, const std::string& key, const RuleBreach& breach) {
   const bool bus = node.kind == GraphNodeKind::kBus;
@@ -267,6 +278,7 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   const TopologyConfig& c = config.topology;
   if (c.shape != TopologyShape::kGraph) return;
   for (std::size_t i = 0; i < c.nodes.size(); ++i) check_node(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
+  check_places(c.nodes, breach);
   check_packet_processes(config, breach);
   check_lanes(config, breach);
   for (std::size_t i = 0; i < c.nodes.size() && config.engine.kind == EngineKind::kNative; ++i)

@@ -132,12 +132,14 @@ LocatedConfig read_fields(const ConfigText& source, std::span<const std::string>
 }
 
 /// Appends the breaches of the rules across fields. A field that could not be read has its default, which is not
-/// judged.
+/// judged, nor are the names of a drawing whose nodes could not be read.
 void check_rules(const LocatedConfig& located, const ValidateOptions& options, std::vector<ConfigIssue>& issues) {
   const std::size_t unread = issues.size();
   for (ConfigIssue& issue : validate_config(located.config, located.positions, options)) {
-    const bool about_unread = std::any_of(issues.begin(), issues.begin() + std::ptrdiff_t(unread),
-                                          [&](const auto& r) { return related(r.key_path, issue.key_path); });
+    const bool about_unread = std::any_of(issues.begin(), issues.begin() + std::ptrdiff_t(unread), [&](const auto& r) {
+      return related(r.key_path, issue.key_path) ||
+             (r.key_path.starts_with("topology.nodes") && issue.key_path.starts_with("topology."));
+    });
     if (!about_unread) issues.push_back(std::move(issue));
   }
 }
