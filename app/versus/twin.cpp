@@ -168,8 +168,8 @@ void draw_twin(const LocatedConfig& located, Twin& twin) {
     return;
   }
   twin.drawing =
-      "the twin has the drawing of this machine without packets; at equal area it has wires of its own, as "
-      "a drawing has as many resources as it has";
+      "the twin has the drawing of this machine without packets; at equal area it has wires of its own, which favours "
+      "it, as a drawing has as many resources as it has";
   twin.config = std::move(drawn);
 }
 

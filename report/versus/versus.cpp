@@ -68,13 +68,15 @@ std::string cost_line(const VersusMachine& machine, const VersusMachine& twin, c
                      mean_text(twin.nj_per_ray));
 }
 
-std::string area_line(const VersusMachine& machine, const VersusMachine* twin, const VersusPair* pair) {
+/// `drawn`: the machine has a drawing, which its twin of any size has not.
+std::string area_line(const VersusMachine& machine, const VersusMachine* twin, const VersusPair* pair, bool drawn) {
   if (twin == nullptr || pair == nullptr)
     return fmt::format("at equal area: no twin of any size is within {:.4g} mm2", machine.mm2);
   return fmt::format(
       "{} at equal area, {} times as fast: the twin has {} resources in {:.4g} mm2, this machine {} in "
-      "{:.4g}",
-      pair->verdict, ratio_text(pair->speed), twin->resources, twin->mm2, machine.resources, machine.mm2);
+      "{:.4g}{}",
+      pair->verdict, ratio_text(pair->speed), twin->resources, twin->mm2, machine.resources, machine.mm2,
+      drawn ? "; that twin is not drawn, and its requests cross no link of the drawing" : "");
 }
 
 /// The class of the slower machine that gains most, beside the tightest bounds of both.
@@ -130,7 +132,8 @@ std::vector<std::string> versus_lines(const Versus& v) {
   const VersusPair* pair = pair_with(v, "twin");
   if (machine == nullptr || twin == nullptr || pair == nullptr) return {};
   return {speed_line(*machine, *twin, *pair, v.seeds), cost_line(*machine, *twin, *pair),
-          area_line(*machine, machine_named(v, "twin_at_equal_area"), pair_with(v, "twin_at_equal_area")),
+          area_line(*machine, machine_named(v, "twin_at_equal_area"), pair_with(v, "twin_at_equal_area"),
+                    v.drawing.has_value()),
           part_line(v, *machine, *twin), turn_line(v)};
 }
 
