@@ -12,8 +12,8 @@
 
 namespace carousel {
 
-// A part of the cycle machine declares itself in the header `part.h` of its own folder, by a struct of types, texts and
-// static functions. The list of all such parts (core/config/parts.h) is a list of types. Reader, schema, search for the
+// A part of the cycle machine declares itself in a header of core/config/parts, by a struct of types, texts and static
+// functions. The list of all such parts (core/config/parts.h) is a list of types. Reader, schema, search for the
 // bottleneck, wiring, byte ledger, report, energy and area iterate over that list when they are compiled.
 
 /// The area of one part: `size` in the unit that its kAreaMeaning names.
@@ -34,7 +34,7 @@ struct PartEnergy {
 ///   kAbsent         clause that says that it is not built
 ///   kName           its name in the byte ledger and on the terminal
 ///   kMeaning, kCountsMeaning, kAreaMeaning, kEnergyMeaning   of the sections of configuration and report
-/// and, beside it, a function `attach` (ringbus/cycle/parts/attached_part.h) that makes it.
+/// and, beside its agent, a function `attach` (ringbus/cycle/parts/attached_part.h) that makes it.
 template <class P>
 concept PartDeclaration = CounterStruct<typename P::Counts> && std::default_initializable<typename P::Keys> &&
     requires(const typename P::Keys& keys, const typename P::Counts& counts, const Costs& costs) {

@@ -43,7 +43,8 @@ struct PartSites {
   std::vector<PartSite> at;
 };
 
-// Each part has a function beside its declaration that makes it, if it is built:
+// Each part has a function beside its agent that makes it, if it is built:
 //   std::vector<AttachedPart<Counts>> attach(const Keys& keys, const PartSites& sites);
+// ringbus/cycle/wiring/machine_parts.cpp includes its header.
 
 }  // namespace carousel::ringbus::cycle

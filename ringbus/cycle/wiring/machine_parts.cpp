@@ -2,6 +2,8 @@
 
 #include <tuple>
 
+#include "ringbus/cycle/parts/stride_prefetcher/stride_prefetcher.h"
+
 namespace carousel::ringbus::cycle {
 
 MachineParts::MachineParts(ChannelList& list, const AgentNumbers& numbers, const PartKeys<Parts>& keys,

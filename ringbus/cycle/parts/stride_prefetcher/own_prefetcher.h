@@ -6,9 +6,9 @@
 #include <string>
 #include <unordered_set>
 
+#include "core/config/parts/stride_prefetcher.h"
 #include "core/types/prefetcher_offer.h"
 #include "ringbus/cycle/parts/attached_part.h"
-#include "ringbus/cycle/parts/stride_prefetcher/part.h"
 #include "ringbus/cycle/parts/stride_prefetcher/prefetcher_ports.h"
 
 namespace carousel::ringbus::cycle {

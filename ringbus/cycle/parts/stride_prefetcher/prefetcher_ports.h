@@ -6,9 +6,9 @@
 #include <memory>
 #include <vector>
 
+#include "core/config/parts/stride_prefetcher.h"
 #include "ringbus/cycle/messages/side_wire.h"
 #include "ringbus/cycle/parts/attached_part.h"
-#include "ringbus/cycle/parts/stride_prefetcher/part.h"
 
 namespace carousel::ringbus::cycle {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "core/config/parts/stride_prefetcher.h"
 #include "ringbus/cycle/parts/attached_part.h"
-#include "ringbus/cycle/parts/stride_prefetcher/part.h"
 #include "ringbus/cycle/parts/stride_prefetcher/prefetcher_ports.h"
 
 namespace carousel::ringbus::cycle {
@@ -42,5 +42,8 @@ class StridePrefetcher final : public CountingAgent<StridePrefetcherCounts> {
   std::size_t oldest_ = 0;  // the stream that is replaced next
   StridePrefetcherCounts counts_;
 };
+
+/// Makes the prefetchers of a machine.
+std::vector<AttachedPart<StridePrefetcherCounts>> attach(const StridePrefetcherKeys& keys, const PartSites& sites);
 
 }  // namespace carousel::ringbus::cycle

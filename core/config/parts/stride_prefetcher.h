@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <vector>
 
 #include "core/config/fields/field.h"
 #include "core/costs/costs.h"
@@ -67,14 +66,6 @@ struct StridePrefetcherCounts {
 };
 
 // ---- the part
-
-namespace ringbus::cycle {
-struct PartSites;
-template <class Counts>
-struct AttachedPart;
-/// Makes the prefetchers of a machine.
-std::vector<AttachedPart<StridePrefetcherCounts>> attach(const StridePrefetcherKeys& keys, const PartSites& sites);
-}  // namespace ringbus::cycle
 
 /// A table of streams beside each L2 that fetches the lines of equal strides ahead of the shape buffers' requests.
 struct StridePrefetcherPart {
