@@ -18,6 +18,7 @@ tests DataPath.* count its misses.
 """
 import argparse
 import copy
+import functools
 import json
 import subprocess
 import sys
@@ -71,17 +72,17 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
 
 
 def notices(lie, runs):
-    """Whether the comparison fails for one of `runs` when the model is misled."""
-    for facts in runs:
+    """Whether the comparison fails for one of `runs` when the model is misled. Those come first whose value few have: the
+    others have the default, often of a part that they do not have."""
+    *path, key = lie.split(".")
+    section_of = lambda config: functools.reduce(lambda section, name: section[name], path, config)
+    values = [section_of(facts["config"])[key] for facts in runs]
+    for value, facts in sorted(zip(values, runs), key=lambda run: values.count(run[0])):
+        other = LIES[lie].get(value, value) if isinstance(LIES[lie], dict) else value + LIES[lie]
+        if other == value:
+            continue
         config = copy.deepcopy(facts["config"])
-        *path, key = lie.split(".")
-        section = config
-        for name in path:
-            section = section[name]
-        if isinstance(LIES[lie], dict):
-            section[key] = LIES[lie].get(section[key], section[key])
-        else:
-            section[key] += LIES[lie]
+        section_of(config)[key] = other
         try:
             if compare({**facts, "config": config}):
                 return True
@@ -127,6 +128,7 @@ def main():
     if answered < len(files) or run.wait() != 0:
         print(f"{arguments.machine_facts} ended after {answered} of {len(files)} machines")
         return 1
+    agree.sort(key=lambda facts: len(facts["steps"]))   # a lie that is noticed anywhere is noticed soonest on a short run
     for lie in LIES if len(files) >= 20 and not failed else ():
         if not notices(lie, agree):
             failed += 1
