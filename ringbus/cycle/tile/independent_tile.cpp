@@ -11,27 +11,13 @@ namespace carousel::ringbus::cycle {
 
 IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMemory& memory,
                                  const TileSettings& settings, const SidePorts& ports)
-    : accel_(machine.accel),
-      memory_(memory),
-      id_(id),
-      store_(*machine.stores[id.value]),
-      statistics_(settings.statistics),
+    : UnlinkedResource(id, machine, memory, settings, ports),
       question_wire_(settings.link, control_latency(settings.link)),
-      trace_(id.value, settings.observed.steps),
       ports_(ports),
-      tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
-      shapes_(settings.memory, settings.link, ports),
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
-      transforms_(settings.accuracy, machine.accel, store_.slots()),
       threads_(store_.slots(), Thread{{}, RayWalk(transforms_, settings.resource.collections.order), {}, {}}),
-      ledger_(tester_),
-      samples_(settings.observed.samples, kFirstPortCounter),
-      recording_(settings.recording),
-      times_(recording_.times != nullptr ? &recording_.times->of(id) : nullptr) {
-  if (recording_.slices != nullptr && recording_.ray == nullptr)
-    tester_.record(*recording_.slices, recording_.track + 1 + recording_.contexts);
-}
+      times_(recording_.times != nullptr ? &recording_.times->of(id) : nullptr) {}
 
 Cycle IndependentTile::next() const {
   const Cycle tested = tests_.empty() ? kNever : tests_.top().done;
@@ -44,9 +30,7 @@ void IndependentTile::run(Cycle end) {
 }
 
 void IndependentTile::step(Cycle now) {
-  if (samples_.due(now)) [[unlikely]]
-    samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
-  now_ = now;
+  begin_step(now);
   take_new_rays(now);
   while (ports_.answers != nullptr && ports_.answers->next() <= now)
     for (const std::uint32_t slot : ports_.answers->take().slots) {
@@ -190,28 +174,12 @@ void IndependentTile::hand_over(Cycle now) {
   completed_port_.send(completed_, freed_slots_, {}, now, sent_hits(store_));
 }
 
-void IndependentTile::note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key) {
-  recording_.ray->facts.push_back({.kind = kind, .at = at, .end = end, .resource = id_.value, .key = key});
-}
-
 void IndependentTile::note_done(Cycle now) {
   for (const RayResult& ray : completed_)
     if (recording_.ray->ray->is(ray.tag)) note(RayFact::Kind::kDone, now, now);
 }
 
 // ---- the end, good or bad
-
-void IndependentTile::read(Cycle at, std::span<std::uint64_t> row) {
-  read_units(tester_, at, row);
-  row[counter_index(ResourceCounter::kCompleted)] = sink_.statistics().rays_completed;
-  row[counter_index(ResourceCounter::kTested)] = sink_.statistics().local_rays;
-}
-
-void IndependentTile::close(Cycle end) {
-  samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
-  ledger_.close(end);
-  tester_.close(end);
-}
 
 ResourceAgent::Work IndependentTile::work() const {
   Work out{tester_.busy_units(), tester_.busy_reads(), 0};
@@ -228,14 +196,6 @@ TileResult IndependentTile::result() const {
   t.stack = stack_;
   t.transformed_rays = transforms_.bytes();
   return t;
-}
-
-ResourceStatistics IndependentTile::statistics() const {
-  ResourceStatistics s = sink_.statistics();
-  // Rays are tested one by one, not as members of packets.
-  s.visits = s.seen_rays = 0;
-  s.nodes.clear();
-  return s;
 }
 
 std::string IndependentTile::describe() const {

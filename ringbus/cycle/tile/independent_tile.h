@@ -7,16 +7,11 @@
 #include <vector>
 
 #include "ringbus/cycle/messages/side_wire.h"
-#include "ringbus/cycle/shapes/shape_buffer.h"
-#include "ringbus/cycle/testers/tester.h"
-#include "ringbus/cycle/tile/resource_agent.h"
-#include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/stages/completed_port.h"
 #include "ringbus/cycle/tile/stages/shade_help.h"
 #include "ringbus/cycle/tile/stages/tile_settings.h"
-#include "ringbus/cycle/tile/tile_ledger.h"
+#include "ringbus/cycle/tile/unlinked_resource.h"
 #include "ringbus/cycle/tile/walk/ray_walk.h"
-#include "ringbus/protocol/machine.h"
 #include "ringbus/resource/visit/any_hit_hold.h"
 
 namespace carousel::ringbus::cycle {
@@ -29,28 +24,18 @@ namespace carousel::ringbus::cycle {
 /// the rays that were ready before it, so that the tests of other rays hide its wait for memory. Picking rays and
 /// moving stack entries costs no cycles: the baseline is given its best, and the bytes that its stacks move are
 /// reported apart.
-class IndependentTile final : public ResourceAgent {
+class IndependentTile final : public UnlinkedResource {
  public:
   /// Keeps references to the machine and its memory.
   IndependentTile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings,
                   const SidePorts& ports);
 
   Cycle next() const override;
-  bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override;
 
-  Cycle last_event() const override { return now_; }
-  void close(Cycle end) override;
   TileResult result() const override;
   Work work() const override;
-  std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
-  ResourceStatistics statistics() const override;
-  CollectionStore::Statistics collections() const override { return {}; }
-  const std::vector<OutPort>& out() const override { return no_links_; }
-  std::string blocked(std::size_t) const override { return ""; }
-  const Trace& trace() const override { return trace_; }
-  const CounterSamples& samples() const override { return samples_; }
 
  private:
   struct Thread {
@@ -81,46 +66,26 @@ class IndependentTile final : public ResourceAgent {
   void spent(std::uint32_t slot, RayStage stage, Cycle until) {
     if (times_ != nullptr) times_->spent(slot, store_.record(slot).tag, stage, until);
   }
-  void note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key = {});
   void note_done(Cycle now);
   void hand_over(Cycle now);
   TileState classify() const;
-  void read(Cycle at, std::span<std::uint64_t> row);
-  void record(const Event& event) {
-    if (statistics_) sink_.record(event);
-  }
 
-  const accel::Accel& accel_;
-  const ShapeMemory& memory_;
-  ResourceId id_;
-  RayStore& store_;
-  bool statistics_;
+  // The users of the shape buffer are slots.
   SideWire question_wire_;
-  StatisticsSink sink_;
-  Trace trace_;
   SidePorts ports_;
-  Tester tester_;
-  ShapeBuffer shapes_;  // users: slots
   CompletedPort completed_port_;
   ShadeHelp help_;
 
-  TransformAccount transforms_;
   std::vector<Thread> threads_;  // by slot
   std::priority_queue<Test, std::vector<Test>, std::greater<>> tests_;
   std::vector<std::uint32_t> held_back_;  // slots of rays that are ready, but the resource shades
   std::uint64_t next_turn_ = 0;
-  std::size_t active_ = 0;  // rays in slots
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
   std::uint64_t stack_held_ = 0;
   StackTraffic stack_;
-  Cycle now_ = 0;
-  TileLedger ledger_;
-  CounterSamples samples_;
-  Recording recording_;
   ResourceTimes* times_;   // null: rays' time is not accounted for
   Cycle waits_since_ = 0;  // the followed ray
-  std::vector<OutPort> no_links_;
 };
 
 }  // namespace carousel::ringbus::cycle

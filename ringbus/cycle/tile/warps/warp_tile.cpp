@@ -11,32 +11,19 @@ namespace carousel::ringbus::cycle {
 
 WarpTile::WarpTile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings,
                    const SidePorts& ports)
-    : accel_(machine.accel),
-      memory_(memory),
-      id_(id),
-      store_(*machine.stores[id.value]),
+    : UnlinkedResource(id, machine, memory, settings, ports),
       simt_(settings.testers.simt),
-      statistics_(settings.statistics),
-      trace_(id.value, settings.observed.steps),
       new_rays_(*ports.new_rays),
-      tester_(settings.testers, settings.plane_order, settings.reads_per_cycle),
-      shapes_(settings.memory, settings.link, ports),
       tests_(shapes_, settings.memory, simt_.lines_per_cycle, tester_),
       registers_(id, simt_.stack_entries, store_.slots(), shapes_.port()),
       any_hit_(settings.link, ports),
       ended_(settings.link, ports),
-      transforms_(settings.accuracy, machine.accel, store_.slots()),
       forming_(simt_),
       prefetcher_(simt_, machine.accel.pieces.get(), store_.slots()),
       log_(simt_.warp),
       rays_(store_.slots(), Ray{{}, RayWalk(transforms_, settings.resource.collections.order), {}}),
-      warps_(static_cast<std::size_t>(simt_.warps)),
-      ledger_(tester_),
-      samples_(settings.observed.samples, kFirstPortCounter),
-      recording_(settings.recording) {
+      warps_(static_cast<std::size_t>(simt_.warps)) {
   for (std::size_t w = warps_.size(); w-- > 0;) free_warps_.push_back(static_cast<std::uint32_t>(w));
-  if (recording_.slices != nullptr && recording_.ray == nullptr)
-    tester_.record(*recording_.slices, recording_.track + 1 + recording_.contexts);
 }
 
 Cycle WarpTile::next() const {
@@ -51,9 +38,7 @@ void WarpTile::run(Cycle end) {
 }
 
 void WarpTile::step(Cycle now) {
-  if (samples_.due(now)) [[unlikely]]
-    samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
-  now_ = now;
+  begin_step(now);
   take_new_rays(now);
   take_answers(now);
   bool more = true;
@@ -244,18 +229,6 @@ void WarpTile::hand_over(Cycle now) {
 
 // ---- the end, good or bad
 
-void WarpTile::read(Cycle at, std::span<std::uint64_t> row) {
-  read_units(tester_, at, row);
-  row[counter_index(ResourceCounter::kCompleted)] = sink_.statistics().rays_completed;
-  row[counter_index(ResourceCounter::kTested)] = sink_.statistics().local_rays;
-}
-
-void WarpTile::close(Cycle end) {
-  samples_.close(end, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
-  ledger_.close(end);
-  tester_.close(end);
-}
-
 ResourceAgent::Work WarpTile::work() const {
   Work out{tester_.busy_units(), tester_.busy_reads(), 0};
   read_energy(tester_, sink_.statistics(), shapes_.counts(), out);
@@ -286,14 +259,6 @@ TileResult WarpTile::result() const {
   t.warp_lanes = static_cast<std::uint64_t>(simt_.warp);
   t.bounces = log_.bounces();
   return t;
-}
-
-ResourceStatistics WarpTile::statistics() const {
-  ResourceStatistics s = sink_.statistics();
-  // Rays are tested one by one, not as members of packets.
-  s.visits = s.seen_rays = 0;
-  s.nodes.clear();
-  return s;
 }
 
 std::string WarpTile::describe() const {

@@ -6,13 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "ringbus/cycle/shapes/shape_buffer.h"
-#include "ringbus/cycle/testers/tester.h"
-#include "ringbus/cycle/tile/resource_agent.h"
-#include "ringbus/cycle/tile/resource_samples.h"
 #include "ringbus/cycle/tile/stages/any_hit_port.h"
 #include "ringbus/cycle/tile/stages/tile_settings.h"
-#include "ringbus/cycle/tile/tile_ledger.h"
+#include "ringbus/cycle/tile/unlinked_resource.h"
 #include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/cycle/tile/warps/ended_rays.h"
 #include "ringbus/cycle/tile/warps/lane_tests.h"
@@ -20,7 +16,6 @@
 #include "ringbus/cycle/tile/warps/treelet_prefetcher.h"
 #include "ringbus/cycle/tile/warps/warp_forming.h"
 #include "ringbus/cycle/tile/warps/warp_log.h"
-#include "ringbus/protocol/machine.h"
 #include "ringbus/resource/visit/any_hit_hold.h"
 
 namespace carousel::ringbus::cycle {
@@ -36,28 +31,18 @@ namespace carousel::ringbus::cycle {
 /// those that go on at nodes, and those that go on at leaves, are packed into warps again (W. Fung et al., Dynamic warp
 /// formation, MICRO 2007). With `idle_lanes: help` lanes without a ray take further nodes from the stacks of the others
 /// (CoopRT, ISCA 2025); here a helper brings its result back to the ray's own stack after each step.
-class WarpTile final : public ResourceAgent {
+class WarpTile final : public UnlinkedResource {
  public:
   /// Keeps references to the machine and its memory.
   WarpTile(ResourceId id, Machine& machine, const ShapeMemory& memory, const TileSettings& settings,
            const SidePorts& ports);
 
   Cycle next() const override;
-  bool polled() const override { return false; }
   void run(Cycle end) override;
   std::string describe() const override;
 
-  Cycle last_event() const override { return now_; }
-  void close(Cycle end) override;
   TileResult result() const override;
   Work work() const override;
-  std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
-  ResourceStatistics statistics() const override;
-  CollectionStore::Statistics collections() const override { return {}; }
-  const std::vector<OutPort>& out() const override { return no_links_; }
-  std::string blocked(std::size_t) const override { return ""; }
-  const Trace& trace() const override { return trace_; }
-  const CounterSamples& samples() const override { return samples_; }
 
  private:
   static constexpr std::uint32_t kNone = ~0u;
@@ -114,30 +99,14 @@ class WarpTile final : public ResourceAgent {
   bool follows(std::uint32_t slot) const {
     return recording_.ray != nullptr && recording_.ray->ray->is(rays_[slot].id);
   }
-  void note(RayFact::Kind kind, Cycle at, Cycle end, accel::NodeKey key = {}) {
-    recording_.ray->facts.push_back({.kind = kind, .at = at, .end = end, .resource = id_.value, .key = key});
-  }
-  void read(Cycle at, std::span<std::uint64_t> row);
-  void record(const Event& event) {
-    if (statistics_) sink_.record(event);
-  }
 
-  const accel::Accel& accel_;
-  const ShapeMemory& memory_;
-  ResourceId id_;
-  RayStore& store_;
+  // The users of the shape buffer are reads of lines.
   SimtConfig simt_;
-  bool statistics_;
-  StatisticsSink sink_;
-  Trace trace_;
   Channel<NewRays>& new_rays_;
-  Tester tester_;
-  ShapeBuffer shapes_;  // users: reads of lines
   LaneTests tests_;
   StackRegisters registers_;
   AnyHitPort any_hit_;
   EndedRays ended_;
-  TransformAccount transforms_;
   WarpForming forming_;
   TreeletPrefetcher prefetcher_;
   WarpLog log_;
@@ -147,12 +116,6 @@ class WarpTile final : public ResourceAgent {
   std::vector<std::uint32_t> free_warps_;
   std::deque<Start> starts_;           // warps that have been formed
   std::vector<std::uint32_t> movers_;  // slots of rays that go on at once
-  std::size_t active_ = 0;             // rays in slots
-  Cycle now_ = 0;
-  TileLedger ledger_;
-  CounterSamples samples_;
-  Recording recording_;
-  std::vector<OutPort> no_links_;
 };
 
 }  // namespace carousel::ringbus::cycle
