@@ -17,6 +17,7 @@
 #include "core/config/config.h"
 #include "core/config/write.h"
 #include "core/numeric/condition.h"
+#include "core/numeric/digest.h"
 #include "core/system/process_memory.h"
 #include "core/types/enum_names.h"
 #include "report/text/ratio.h"
@@ -211,6 +212,28 @@ report::Report build_report(const Prepared& prepared, const RenderJob& job, cons
   if (result.rays_restarted > 0 || (result.cycle && result.cycle->stop)) r.faults.emplace().stop = stop(config, result);
   if (verifying) r.verify = verify(*verifying);
   r.digest = {job.hits_digest(), job.image_digest()};
+  return r;
+}
+
+report::Report report_without_rays(const Prepared& prepared, bool complete, std::uint64_t cycles, std::size_t threads,
+                                   double wall_seconds) {
+  report::Report r;
+  r.incomplete = !complete;
+  r.carousel = program_info();
+  r.config = config_json(prepared.absolute_config());
+  for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
+  r.plugins = plugins_section(prepared.located.plugins);
+  r.scene.name = "none";
+  r.engine.kind = enum_name(prepared.config().engine.kind);
+  r.engine.cycles = cycles;
+  r.engine.deterministic = true;
+  r.engine.reason = "virtual time: nothing depends on the host's threads";
+  r.digest.hits = HitsDigest().hex();
+  r.host.threads = threads;
+  r.host.wall_seconds = wall_seconds;
+  r.host.peak_memory_bytes = peak_memory_bytes();
+  r.host.simd = accel::simd_targets().front();
+  r.host.machine = machine_info();
   return r;
 }
 

@@ -2,16 +2,9 @@
 
 #include <algorithm>
 
-#include "accel/traverse/kernels.h"
+#include "app/build_report/build_report.h"
 #include "app/build_report/ring_sections.h"
-#include "app/host/machine_info.h"
-#include "app/host/program_info.h"
-#include "app/plugins/plugins.h"
 #include "core/config/config.h"
-#include "core/config/write.h"
-#include "core/numeric/digest.h"
-#include "core/system/process_memory.h"
-#include "core/types/enum_names.h"
 #include "report/text/ratio.h"
 
 namespace carousel::app {
@@ -77,28 +70,12 @@ std::vector<report::Link> links(const Config& config, const ringbus::TrafficResu
 
 report::Report traffic_report(const Prepared& prepared, const ringbus::TrafficResult& result) {
   const Config& config = prepared.config();
-  report::Report r;
-  r.incomplete = !result.complete;
-  r.carousel = program_info();
-  r.config = config_json(prepared.absolute_config());
-  for (const IgnoredKey& ignored : prepared.ignored()) r.ignored_keys.push_back(ignored.key);
-  r.plugins = plugins_section(prepared.located.plugins);
-  r.scene.name = "none";
-  r.engine.kind = enum_name(config.engine.kind);
-  r.engine.cycles = result.cycles;
+  report::Report r = report_without_rays(prepared, result.complete, result.cycles, result.threads, result.wall_seconds);
   add_clocks(r, config);
-  r.engine.deterministic = true;
-  r.engine.reason = "virtual time: nothing depends on the host's threads";
   r.links = links(config, result);
   r.drawing = drawing(config.topology);
   r.traffic = traffic(config, result);
   if (several_clocks(config)) r.traffic->mean_nanoseconds = nanoseconds(config, r.traffic->latency.mean);
-  r.digest.hits = HitsDigest().hex();  // the digest of no rays
-  r.host.threads = result.threads;
-  r.host.wall_seconds = result.wall_seconds;
-  r.host.peak_memory_bytes = peak_memory_bytes();
-  r.host.simd = accel::simd_targets().front();
-  r.host.machine = machine_info();
   return r;
 }
 
