@@ -1,9 +1,9 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 
 #include "core/costs/cost_table.h"
+#include "core/numeric/exponential.h"
 
 namespace carousel {
 
@@ -20,7 +20,7 @@ struct Costs {
     const double e8 = of(Cost::kSram8), e32 = of(Cost::kSram32), e1024 = of(Cost::kSram1024);
     const auto between = [&](double low_kib, double low, double high_kib, double high) {
       if (low <= 0 || high <= 0) return low;
-      return low * std::pow(high / low, std::log(kib / low_kib) / std::log(high_kib / low_kib));
+      return low * pow_precise(high / low, log_precise(kib / low_kib) / log_precise(high_kib / low_kib));
     };
     return kib < 32 ? between(8, e8, 32, e32) : between(32, e32, 1024, e1024);
   }

@@ -1,5 +1,6 @@
 // A list of several parts, of which one is the product's.
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -58,6 +59,25 @@ TEST(PartLists, ThePrefetcherSaysWhatItCosts) {
   const PartEnergy energy = Prefetcher::energy({.hints = 3}, {.lines = 2, .streams = 4}, costs);
   EXPECT_EQ(energy.events, 3 * (2 * 4 + 2));
   EXPECT_EQ(energy.pj_each, 10);
+}
+
+// The figures were computed with forty decimal digits. An access takes e = low (high / low)^(ln(s / s_low) / ln(s_high
+// / s_low)); the host's logarithm has no part in it.
+TEST(Costs, OfAnAccessGoWithTheSizeOfTheStore) {
+  Costs costs;
+  costs.values[cost_index(Cost::kSram8)] = 10;
+  costs.values[cost_index(Cost::kSram32)] = 20;
+  costs.values[cost_index(Cost::kSram1024)] = 100;
+  EXPECT_EQ(costs.sram_access_pj(8), 10);
+  EXPECT_EQ(costs.sram_access_pj(32), 20);
+  for (const auto& [kib, pj] : std::vector<std::pair<double, double>>{{0.0625, 0.88388347648318440550},
+                                                                      {2, 5},
+                                                                      {36, 21.12440530221043794178},
+                                                                      {128, 38.07307877431756979793},
+                                                                      {1024, 100},
+                                                                      {2048, 137.9729661461214832390}})
+    EXPECT_NEAR(costs.sram_access_pj(kib) / pj, 1, 4e-15) << kib;
+  EXPECT_EQ(Costs().sram_access_pj(128), 0) << "without a profile";
 }
 
 }  // namespace
