@@ -92,18 +92,24 @@ std::string part_line(const Versus& v, const VersusMachine& machine, const Versu
   return out;
 }
 
-std::string turn_line(const Versus& v) {
+std::string turn_line(const Versus& v, const VersusPair& pair) {
   if (v.turns.empty()) return "what would turn it round: not looked for";
-  const char* other = v.slower == "twin" ? "this machine" : "the twin";
+  const bool twin = v.slower == "twin";
+  const char* other = twin ? "this machine" : "the twin";
   const auto turns = std::count_if(v.turns.begin(), v.turns.end(), [](const VersusTurn& t) { return t.speed > 1; });
   const VersusTurn& best = v.turns.front();
+  if (pair.verdict == "alike")
+    return fmt::format("nothing to turn round; with {} {} would be {:.3f} times as fast as {}", best.action,
+                       twin ? "the twin" : "this machine", best.speed, other);
   if (turns == 0)
     return fmt::format(
         "no part of {} that were relaxed alone would turn it round; {} brings it to {:.3f} times the "
         "speed of {}",
         v.turns.size(), best.action, best.speed, other);
   return fmt::format("turned round by {}: {:.3f} times as fast as {} then{}", best.action, best.speed, other,
-                     turns > 1 ? fmt::format("; so do {} others", turns - 1) : "");
+                     turns < 2    ? ""
+                     : turns == 2 ? "; so does one other"
+                                  : fmt::format("; so do {} others", turns - 1));
 }
 
 }  // namespace
@@ -134,7 +140,7 @@ std::vector<std::string> versus_lines(const Versus& v) {
   return {speed_line(*machine, *twin, *pair, v.seeds), cost_line(*machine, *twin, *pair),
           area_line(*machine, machine_named(v, "twin_at_equal_area"), pair_with(v, "twin_at_equal_area"),
                     v.drawing.has_value()),
-          part_line(v, *machine, *twin), turn_line(v)};
+          part_line(v, *machine, *twin), turn_line(v, *pair)};
 }
 
 }  // namespace carousel::report

@@ -95,6 +95,25 @@ TEST(VersusCommand, ComparesRaysThatLookForSeveralHits) {
   }
 }
 
+// The last line of machines that are alike names no change that turns them round, since nothing is to be turned.
+TEST(VersusLines, SayWhatTurnsItRound) {
+  report::Versus v;
+  v.slower = "twin";
+  v.machines = {{.name = "machine"}, {.name = "twin"}};
+  v.against = {{.than = "twin", .verdict = "faster"}};
+  v.turns = {{"memory_bandwidth", "twice the memory", {}, 0.5, 1.25}, {"units", "more units", {}, 0.1, 1.1}};
+  EXPECT_EQ(report::versus_lines(v).back(),
+            "turned round by twice the memory: 1.250 times as fast as this machine then; so does one other");
+  v.turns.pop_back();
+  EXPECT_EQ(report::versus_lines(v).back(),
+            "turned round by twice the memory: 1.250 times as fast as this machine then");
+  v.turns.front().speed = 0.9;
+  EXPECT_THAT(report::versus_lines(v).back(), HasSubstr("would turn it round; twice the memory brings it to 0.900"));
+  v.against.front().verdict = "alike";
+  EXPECT_EQ(report::versus_lines(v).back(),
+            "nothing to turn round; with twice the memory the twin would be 0.900 times as fast as this machine");
+}
+
 // By hand: ratios 2 and 8 have the geometric mean 4; with two values t is 12.71 and the error of the mean half of
 // ln 4 (W. S. Gosset, The probable error of a mean, 1908).
 TEST(VersusRatio, IsOfPairs) {
