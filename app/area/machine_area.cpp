@@ -257,11 +257,10 @@ void fit_area(LocatedConfig& located, const SceneFacts& scene) {
 }
 
 void require_no_search(const LocatedConfig& located) {
-  const AreaConfig& area = located.config.area;
-  if (area.budget_mm2 && area.fit == AreaConfig::Fit::kBest)
+  if (is_searched(located.config.area))
     throw ConfigError({{located.positions.find("area.fit"), "area.fit",
-                        "only carousel run and versus search for a split; expected resources, all or refuse, found "
-                        "best"}});
+                        "only carousel run, sweep and versus search for a split; expected resources, all or refuse, "
+                        "found best"}});
 }
 
 }  // namespace carousel::app

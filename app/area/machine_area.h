@@ -28,6 +28,11 @@ std::optional<Config> largest_machine(const LocatedConfig& machine, const SceneF
 /// where no number is.
 void fit_area(LocatedConfig& located, const SceneFacts& scene);
 
+/// True if the split of the machine's area is searched for (area.fit: best).
+inline bool is_searched(const AreaConfig& area) {
+  return area.budget_mm2 && area.fit == AreaConfig::Fit::kBest;
+}
+
 /// Refuses area.fit: best where no search follows. Throws a ConfigError.
 void require_no_search(const LocatedConfig& located);
 

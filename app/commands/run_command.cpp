@@ -12,6 +12,7 @@
 #include <spdlog/spdlog.h>
 
 #include "accel/builders/file/write_trees.h"
+#include "app/area/machine_area.h"
 #include "app/area_search/area_search.h"
 #include "app/build_report/build_report.h"
 #include "app/build_report/experiment.h"
@@ -254,8 +255,7 @@ int run_command(const RunArguments& arguments) {
 
   const std::string resolved = resolved_yaml(p.absolute_config());  // of a search the configuration that it began with
   std::optional<report::AreaSearch> search;
-  if (const AreaConfig& area = p.config().area; area.budget_mm2 && area.fit == AreaConfig::Fit::kBest)
-    search = search_area(p, LocatedConfig(p.located), interrupt, arguments.quiet);
+  if (is_searched(p.config().area)) search = search_area(p, LocatedConfig(p.located), interrupt, arguments.quiet);
 
   RenderJob job(p);
   if (ranks) {

@@ -363,7 +363,7 @@ Prepared prepare(const ConfigArguments& arguments, const ValidateOptions& option
   if (!options.searches) require_no_search(p.located);
   if (!options.force) require_flow(p);
   p.config_folder = std::filesystem::path(arguments.config).parent_path();
-  const bool is_fitted = p.config().area.budget_mm2 && p.config().area.fit != AreaConfig::Fit::kBest;
+  const bool is_fitted = p.config().area.budget_mm2 && !is_searched(p.config().area);
   const auto call = [&] {
     if (before_scene) with_positions(p.located.positions, [&] { before_scene(p); });
   };

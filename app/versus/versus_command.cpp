@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "app/area/machine_area.h"
 #include "app/area_search/area_search.h"
 #include "app/host/exit_status.h"
 #include "app/host/interrupt.h"
@@ -34,8 +35,7 @@ int versus_command(const VersusArguments& arguments) {
     resolved = resolved_yaml(config);
     output.emplace(folder, &config, arguments.force, Results::kVersus);
   });
-  const AreaConfig& area = p.config().area;
-  const bool best = area.budget_mm2 && area.fit == AreaConfig::Fit::kBest;
+  const bool best = is_searched(p.config().area);
   std::optional<report::AreaSearch> search;
   if (best) search = search_area(p, LocatedConfig(p.located), interrupt, arguments.quiet);
   report::Versus versus = run_versus(p, {arguments.seeds, !arguments.no_search, arguments.quiet, best}, interrupt);

@@ -147,13 +147,18 @@ Table table_of(std::string id, std::string caption, const Json& list, const Json
   Table table{std::move(id), std::move(caption)};
   if (list.empty()) return table;
   std::vector<std::string> keys;
-  for (const auto& [key, value] : list.front().items()) {
-    if (value.is_structured() || std::find(left_out.begin(), left_out.end(), key) != left_out.end()) continue;
-    const Json* about = find(item_schema, "properties." + key);
-    const std::string unit = one_unit(about ? about->value("unit", "") : "", list.front());
-    keys.push_back(key);
-    table.columns.push_back({words(key), unit == "fraction" ? "" : unit, about ? about->value("description", "") : ""});
-  }
+  const auto is_among = [](const std::vector<std::string>& these, const std::string& key) {
+    return std::find(these.begin(), these.end(), key) != these.end();
+  };
+  for (const Json& item : list)
+    for (const auto& [key, value] : item.items()) {
+      if (value.is_structured() || is_among(left_out, key) || is_among(keys, key)) continue;
+      const Json* about = find(item_schema, "properties." + key);
+      const std::string unit = one_unit(about ? about->value("unit", "") : "", item);
+      keys.push_back(key);
+      table.columns.push_back(
+          {words(key), unit == "fraction" ? "" : unit, about ? about->value("description", "") : ""});
+    }
   for (const Json& item : list) {
     auto& row = table.rows.emplace_back();
     for (const std::string& key : keys) {

@@ -204,7 +204,7 @@ void energy_words(Words& w) {
            std::string("part of the area: ") + P::kAreaMeaning);
   });
   w.item("best of N splits: N resources, N testers each, L2 N KiB with N ports, N workers", "area.search.trials",
-         "the split of area.budget_mm2 with the fewest foretold cycles")
+         "the split of area.budget_mm2 that the machine has")
       .item("N times the first", "area.search.trials[].cycles", "speed over that of the split tried first");
 }
 

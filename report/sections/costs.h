@@ -237,6 +237,7 @@ void describe(V& v, const AreaParts& r) {
 struct AreaTrial {
   std::uint64_t resources = 0, testers = 0, l2_kib = 0, l2_lines_per_cycle = 0, shader_workers = 0;
   double mm2 = 0, cycles = 0;
+  std::optional<double> frame_cycles{};
   bool chosen = false;
 };
 
@@ -249,7 +250,9 @@ void describe(V& v, const AreaTrial& r) {
   v.field("shader_workers", r.shader_workers, "workers", "shader workers");
   v.field("mm2", r.mm2, "mm2", "area of the machine");
   v.field("cycles", r.cycles, "cycles", "foretold cycles of the frame: of a whole frame exact, else estimated");
-  v.field("chosen", r.chosen, "", "true for the split that the machine has: the one with the fewest foretold cycles");
+  v.field("frame_cycles", r.frame_cycles, "cycles",
+          "of sampled trials the two best ones: cycles of the frame as the run has it");
+  v.field("chosen", r.chosen, "", "true for the split that the machine has: the one with the fewest cycles of these");
 }
 
 /// The search for the best split of a budget, with area.fit: best.

@@ -3,9 +3,13 @@
 #include <algorithm>
 #include <chrono>
 #include <new>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "app/area/machine_area.h"
+#include "app/area_search/area_search.h"
 #include "app/build_report/experiment.h"
 #include "app/build_report/verdict.h"
 #include "app/host/interrupt.h"
@@ -39,8 +43,13 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
   try {
     const auto start = std::chrono::steady_clock::now();
     const InterruptScope interrupt;
-    set_machine(prepared, load_config(setup.source, point.sets));
-    prepared.threads = prepared.threads_beside = point_threads(prepared.config());
+    LocatedConfig machine = load_config(setup.source, point.sets);
+    prepared.threads = prepared.threads_beside = point_threads(machine.config);
+    std::optional<report::AreaSearch> search;
+    if (is_searched(machine.config.area))
+      search = search_area(prepared, machine, interrupt, true);
+    else
+      set_machine(prepared, std::move(machine));
     report::Report report;
     if (prepared.has_rays()) {
       RenderJob job(prepared);
@@ -48,6 +57,7 @@ std::optional<PointError> run_point(const SweepSetup& setup, Prepared& prepared,
     } else {
       report = run_without_rays(prepared, interrupt, true);
     }
+    if (search) report.area->search = std::move(search);
     std::optional<PointError> error;
     if (verdict(report, kInterrupted) != kDone) error = {"verification", "a verification or comparison failed"};
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;

@@ -49,7 +49,7 @@ Prepared load_group(const SweepSetup& setup, const SweepPoint& first, std::size_
   tbb::task_scheduler_handle handle{tbb::attach{}};
   ConfigArguments arguments{setup.config.string(), first.sets};
   arguments.sets.push_back(fmt::format("engine.threads={}", build_threads));
-  Prepared prepared = prepare(arguments, {}, false);
+  Prepared prepared = prepare(arguments, {.searches = true}, false);
   tbb::finalize(handle, std::nothrow);
   if (scene_group(prepared.config()) != first.group)
     throw FileError(setup.config.string() + " was changed while the sweep ran");

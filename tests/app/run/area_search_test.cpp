@@ -135,10 +135,52 @@ TEST_F(AreaSearchRun, LargeFramesAreSampled) {
   const Json r = run({"image.width=512", "image.height=400", "image.max_depth=1"});
   EXPECT_NEAR(r["area"]["search"]["fraction"].get<double>(), 200000.0 / (512 * 400), 1e-9);
   EXPECT_FALSE(r.contains("sampled")) << "the run itself is whole";
-  for (const Json& trial : r["area"]["search"]["trials"])
+  std::vector<double> foretold, of_frame;
+  for (const Json& trial : r["area"]["search"]["trials"]) {
+    foretold.push_back(trial["cycles"]);
+    if (trial.contains("frame_cycles")) of_frame.push_back(trial["frame_cycles"]);
+  }
+  std::sort(foretold.begin(), foretold.end());
+  std::sort(of_frame.begin(), of_frame.end());
+  ASSERT_EQ(of_frame.size(), 2u) << "the two best are simulated whole";
+  EXPECT_EQ(r["engine"]["cycles"], of_frame[0]) << "and the faster one is taken";
+  for (const Json& trial : r["area"]["search"]["trials"]) {
+    EXPECT_EQ(trial.contains("frame_cycles"), trial["cycles"].get<double>() <= foretold[1]);
     if (trial["chosen"] == true) {
-      EXPECT_NEAR(trial["cycles"].get<double>() / r["engine"]["cycles"].get<double>(), 1, 0.1);
+      EXPECT_EQ(trial["frame_cycles"], of_frame[0]);
+      EXPECT_NEAR(trial["cycles"].get<double>() / of_frame[0], 1, 0.1);
     }
+  }
+  EXPECT_THAT(program_.read("out/report.html"), HasSubstr("frame cycles"));
+}
+
+TEST_F(AreaSearchRun, EachPointOfASweepGetsItsBest) {
+  program_.write("machine.yaml", kMachine);
+  const std::vector<std::string> small{"--set", "image.width=12", "--set", "image.height=8"};
+  const auto started = [&](std::vector<std::string> words) {
+    words.insert(words.end(), small.begin(), small.end());
+    const Outcome outcome = program_.run(words);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+  };
+  started({"sweep", "machine.yaml", "--vary", "area.budget_mm2=12,16", "--vary", "area.fit=all,best", "--out", "grid",
+           "--quiet"});
+  const Json sweep = Json::parse(program_.read("grid/sweep.json"));
+  ASSERT_EQ(sweep["points"].size(), 4u);
+  int searched = 0;
+  for (const auto& file : std::filesystem::directory_iterator(program_.folder() / "grid/points")) {
+    const Json point = Json::parse(program_.read("grid/points/" + file.path().filename().string()));
+    const bool best = point["keys"]["area.fit"] == "best";
+    ASSERT_EQ(point["report"]["area"].contains("search"), best);
+    if (!best) continue;
+    ++searched;
+    started({"run", "machine.yaml", "--set", "area.budget_mm2=" + point["keys"]["area.budget_mm2"].dump(), "--out",
+             "one", "--force", "--quiet"});
+    const Json alone = Json::parse(program_.read("one/report.json"));
+    EXPECT_EQ(point["report"]["area"], alone["area"]);
+    EXPECT_EQ(point["report"]["engine"]["cycles"], alone["engine"]["cycles"]);
+    EXPECT_EQ(point["report"]["digest"], alone["digest"]);
+  }
+  EXPECT_EQ(searched, 2);
 }
 
 TEST_F(AreaSearchRun, WhatHasNoMeaningIsRefusedFirst) {
@@ -146,7 +188,7 @@ TEST_F(AreaSearchRun, WhatHasNoMeaningIsRefusedFirst) {
   EXPECT_THAT(refused({"energy.profile=none"}), HasSubstr("an area needs a process"));
   EXPECT_THAT(refused({"engine.kind=native", "energy.profile=none"}), HasSubstr("area.fit"));
   EXPECT_THAT(refused({"workload={traffic: {packets: 100}}"}), HasSubstr("splits are compared by rays"));
-  EXPECT_THAT(refused({}, {"accuracy"}), HasSubstr("only carousel run and versus search for a split"));
+  EXPECT_THAT(refused({}, {"accuracy"}), HasSubstr("only carousel run, sweep and versus search for a split"));
   const Outcome other = start({"run", "--out", "out", "--quiet"}, {"area.fit=all"});
   ASSERT_EQ(other.status, 0) << other.err;
   const std::string report = program_.read("out/report.json");
