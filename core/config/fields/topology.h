@@ -294,10 +294,11 @@ void describe(V& v, TopologyConfig& c) {
   v.choice("tour", c.tour,
            "The order in which a packet visits resources of a graph: that of their names in `nodes`, or from each to "
            "the nearest that is left by the links of its lane, the first at the beginning.");
-  v.choice("channels", c.channels,
-           "The virtual channel that a packet takes: any; those of a class that counts the datelines it has passed; "
-           "or those of a class that counts its links. With none, links have no channels: each lane is a ring, a packet "
-           "keeps its lane, and `flow` keeps the ring from filling up; or links lead straight to every resource.");
+  v.choice(
+      "channels", c.channels,
+      "The virtual channel that a packet takes: any; those of a class that counts the datelines it has passed; "
+      "or those of a class that counts its links. With none, links have no channels: each lane is a ring, a packet "
+      "keeps its lane, and `flow` keeps the ring from filling up; or links lead straight to every resource.");
 }
 
 }  // namespace config
