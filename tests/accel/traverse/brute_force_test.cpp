@@ -59,17 +59,7 @@ TEST(BruteForce, AgreesOnEverySimdTarget) {
 // Origins and directions of any magnitude, far beyond what the tree was built for.
 TEST(BruteForce, AgreesOnRaysOfAnyBits) {
   const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 100, 8);
-  Random random(13);
-  RayBatch rays;
-  for (int i = 0; i < 1500; ++i) {
-    RayRequest r = ray_to(random.in_box(Vec3{-9}, Vec3{9}), random.in_box(Vec3{-1}, Vec3{1}));
-    if (i % 2) r.ray.origin[static_cast<int>(random.below(3))] = random.any_bits();
-    if (i % 3) r.ray.direction[static_cast<int>(random.below(3))] = random.any_bits();
-    if (i % 5 == 0) r.ray.tmin = random.any_bits();
-    if (i % 7 == 0) r.ray.tmax = random.any_bits();
-    rays.push_back(r);
-  }
-  const BruteForceAnswers brute(scene, rays);
+  const BruteForceAnswers brute(scene, rays_of_any_bits(1500, 13));
   EXPECT_GT(brute.hits(), 50u);
   for (const SimdTarget target : usable_simd_targets()) {
     const SimdGuard guard;

@@ -45,17 +45,7 @@ TEST_P(Levels, AgreeOnEverySimdTarget) {
 
 TEST_P(Levels, AgreeOnRaysOfAnyBits) {
   const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 100, 8);
-  Random random(43);
-  RayBatch rays;
-  for (int i = 0; i < 800; ++i) {
-    RayRequest r = ray_to(random.in_box(Vec3{-9}, Vec3{9}), random.in_box(Vec3{-1}, Vec3{1}));
-    if (i % 2) r.ray.origin[static_cast<int>(random.below(3))] = random.any_bits();
-    if (i % 3) r.ray.direction[static_cast<int>(random.below(3))] = random.any_bits();
-    if (i % 5 == 0) r.ray.tmin = random.any_bits();
-    if (i % 7 == 0) r.ray.tmax = random.any_bits();
-    rays.push_back(r);
-  }
-  const BruteForceAnswers brute(scene, rays, GetParam());
+  const BruteForceAnswers brute(scene, rays_of_any_bits(800, 43), GetParam());
   EXPECT_GT(brute.hits(), 20u);
   for (const SimdTarget target : usable_simd_targets()) {
     const SimdGuard guard;

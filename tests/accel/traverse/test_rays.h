@@ -57,6 +57,21 @@ inline std::array<Vec3, 3> random_triangle(const scene::Scene& scene, Random& ra
   return p;
 }
 
+/// Rays with origins and directions of any magnitude, far beyond what a tree is built for.
+inline RayBatch rays_of_any_bits(int count, std::uint64_t seed) {
+  Random random(seed);
+  RayBatch rays;
+  for (int i = 0; i < count; ++i) {
+    RayRequest r = ray_to(random.in_box(Vec3{-9}, Vec3{9}), random.in_box(Vec3{-1}, Vec3{1}));
+    if (i % 2) r.ray.origin[static_cast<int>(random.below(3))] = random.any_bits();
+    if (i % 3) r.ray.direction[static_cast<int>(random.below(3))] = random.any_bits();
+    if (i % 5 == 0) r.ray.tmin = random.any_bits();
+    if (i % 7 == 0) r.ray.tmax = random.any_bits();
+    rays.push_back(r);
+  }
+  return rays;
+}
+
 /// The mix of rays that finds faults: through the bounds, aimed at edges and vertices, along the axes from
 /// planes that boxes lie on, from the surface, cut short by tmin and tmax; every eighth is a shadow ray.
 inline RayBatch mixed_rays(const scene::Scene& scene, std::size_t count, std::uint64_t seed) {
