@@ -15,7 +15,7 @@ constexpr const char* kConfig =
 
 std::string run_into(const Program& program, const std::string& out, const std::vector<std::string>& sets = {}) {
   std::vector<std::string> arguments{"run", "a.yaml", "--quiet", "--out", out};
-  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+  add_sets(arguments, sets);
   const Outcome outcome = program.run(arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return out;

@@ -17,7 +17,7 @@ const char* const kInstances =
 
 Json reported(const Program& program, const std::vector<std::string>& sets) {
   std::vector<std::string> arguments{"run", "planes.yaml", "--json", "--quiet", "--force"};
-  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+  add_sets(arguments, sets);
   const Outcome outcome = program.run(arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return Json::parse(outcome.out);

@@ -29,7 +29,7 @@ TEST_P(DrawnConfigs, AreTheSameMachines) {
   const Program program;
   const std::string file = GetParam().string();
   const auto run = [&](std::vector<std::string> arguments) {
-    for (const std::string& set : small_picture()) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, small_picture());
     arguments.insert(arguments.end(), {"--set", "scene.triangles=300"});
     if (has_traffic(GetParam())) arguments.insert(arguments.end(), {"--set", "workload.traffic.packets=1000"});
     return program.run(arguments);

@@ -31,7 +31,7 @@ const std::string kClusters =
 
 Json report_of(const Program& program, const std::string& file, const std::vector<std::string>& sets = {}) {
   std::vector<std::string> arguments{"run", file, "--json", "--force"};
-  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+  add_sets(arguments, sets);
   const Outcome run = program.run(arguments);
   EXPECT_EQ(run.status, 0) << testing::PrintToString(sets) << run.err;
   return run.status == 0 ? Json::parse(run.out) : Json::object();

@@ -23,7 +23,7 @@ topology: {resources: 2}
 
 Json run(const Program& program, const std::string& out, const std::vector<std::string>& sets) {
   std::vector<std::string> arguments{"run", "small.yaml", "--out", out, "--quiet", "--force"};
-  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+  add_sets(arguments, sets);
   const Outcome outcome = program.run(arguments);
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   return Json::parse(program.read(out + "/report.json"));

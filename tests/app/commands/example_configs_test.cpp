@@ -22,7 +22,7 @@ TEST_P(ExampleConfigs, Run) {
   const Program program;
   std::vector<std::string> arguments{"run", GetParam().string(), "--json", "--quiet", "--no-html", "--out", "out"};
   const std::vector<std::string>& small = small_picture();
-  for (const std::string& set : small) arguments.insert(arguments.end(), {"--set", set});
+  add_sets(arguments, small);
   const bool traffic = has_traffic(GetParam());
   if (traffic) arguments.insert(arguments.end(), {"--set", "workload.traffic.packets=1000"});
   const bool surfaces = GetParam().filename() != "gaussians.yaml";  // the reference knows nothing else

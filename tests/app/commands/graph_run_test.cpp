@@ -37,7 +37,7 @@ TEST_P(DrawnShape, TakesTheSameCycles) {
   program.write("graph.yaml", kMachine + drawn.out);
   // The search for the bottleneck tries other shapes, which a drawing has not.
   std::vector<std::string> more{"--quiet", "--set", "engine.what_if=false"};
-  for (const std::string& set : GetParam().sets) more.insert(more.end(), {"--set", set});
+  add_sets(more, GetParam().sets);
   for (const char* name : {"shape", "graph"}) {
     std::vector<std::string> arguments{"run", std::string(name) + ".yaml", "--out", name};
     arguments.insert(arguments.end(), more.begin(), more.end());
@@ -125,7 +125,7 @@ TEST(GraphRun, AnyGraphGivesTheSamePicture) {
        "all_to: 'door[1]', both: true}]"}};
   for (const std::vector<std::string>& sets : variants) {
     std::vector<std::string> arguments{"run", "graph.yaml", "--json", "--force", "--set", "verify=reference"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome run = program.run(arguments);
     ASSERT_EQ(run.status, 0) << testing::PrintToString(sets) << run.err;
     EXPECT_EQ(Json::parse(run.out)["digest"], expected) << testing::PrintToString(sets);
@@ -150,7 +150,7 @@ TEST(GraphRun, HitsSurviveAPacketProcess) {
                                        "image.width=32",
                                        "--set",
                                        "image.height=20"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome out = Program().run(arguments);
     EXPECT_EQ(out.status, 0) << out.err;
     return out.status == 0 ? Json::parse(out.out) : Json();
@@ -253,7 +253,7 @@ TEST(GraphRun, WaysAndToursKeepThePictureAndChangeTheTime) {
                                                {"topology.links.0.both=true", "topology.routes=up_down"},
                                                {"topology.nodes.2.credit_cycles=9"}}) {
     std::vector<std::string> arguments{"run", "graph.yaml", "--json", "--force", "--set", "verify=reference"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome run = program.run(arguments);
     ASSERT_EQ(run.status, 0) << testing::PrintToString(sets) << run.err;
     const Json report = Json::parse(run.out);

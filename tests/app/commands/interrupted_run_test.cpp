@@ -56,7 +56,7 @@ class InterruptedRun : public testing::Test {
   /// Starts a run, and interrupts it after some time.
   Interrupted interrupt(const std::vector<std::string>& sets, std::chrono::duration<double> after, int number) const {
     std::vector<std::string> run{"run", "a.yaml", "--out", "out"};
-    for (const std::string& set : sets) run.insert(run.end(), {"--set", set});
+    add_sets(run, sets);
     std::filesystem::remove_all(program_.folder() / "out");
     Interrupted out{signalled(run, after, number), {}};
     const std::string text = program_.read("out/report.json");

@@ -92,7 +92,7 @@ class SkyMapRun : public testing::Test {
  protected:
   Json run(const std::string& config, std::vector<std::string> sets, const std::string& out = "out") {
     std::vector<std::string> arguments{"run", config, "--out", out, "--quiet", "--force"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome outcome = program_.run(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err << testing::PrintToString(sets);
     return outcome.status == 0 ? Json::parse(program_.read(out + "/report.json")) : Json();

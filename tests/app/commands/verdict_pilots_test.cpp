@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "tests/app/support/program.h"
+#include "tests/app/support/run_report.h"
 
 namespace carousel::verdict_pilots_test {
 namespace {
@@ -13,12 +14,7 @@ using Json = nlohmann::ordered_json;
 
 class VerdictPilots : public testing::Test {
  protected:
-  Json searched(const std::string& config) const {
-    program_.write("a.yaml", config);
-    const Outcome outcome = program_.run({"run", "a.yaml", "--quiet", "--set", "engine.what_if=true", "--out", "out"});
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return Json::parse(program_.read("out/report.json"));
-  }
+  Json searched(const std::string& config) const { return run_report(program_, config, {"engine.what_if=true"}); }
 
   const Program program_;
 };

@@ -11,6 +11,7 @@
 
 #include "report/run/report_json.h"
 #include "tests/app/support/program.h"
+#include "tests/app/support/run_report.h"
 #include "tests/support/json_schema_check.h"
 #include "tests/support/random_runs.h"
 
@@ -22,12 +23,7 @@ using Json = nlohmann::ordered_json;
 class VerdictRun : public testing::Test {
  protected:
   Json run(const std::string& config, const std::vector<std::string>& sets) const {
-    program_.write("a.yaml", config);
-    std::vector<std::string> words{"run", "a.yaml", "--quiet", "--force", "--out", "out"};
-    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
-    const Outcome outcome = program_.run(words);
-    EXPECT_EQ(outcome.status, 0) << outcome.err;
-    return Json::parse(program_.read("out/report.json"));
+    return run_report(program_, config, sets);
   }
 
   const Program program_;

@@ -40,7 +40,7 @@ class SeriesProgram : public testing::Test {
   Outcome outcome_of(const std::string& scene, const std::vector<std::string>& sets) const {
     program_.write("series.yaml", "scene: " + scene + "\n" + kMachine);
     std::vector<std::string> arguments{"run", "series.yaml", "--out", "out", "--force", "--quiet", "--no-html"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     return program_.run(arguments);
   }
   Json run(const std::string& scene, const std::vector<std::string>& sets) const {

@@ -44,7 +44,7 @@ class MovingScene : public testing::Test {
 
   Outcome run(const std::vector<std::string>& sets) const {
     std::vector<std::string> arguments{"run", "arm.yaml", "--hits", "--out", "out", "--force"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     return program_.run(arguments);
   }
 
@@ -113,7 +113,7 @@ TEST_F(MovingScene, InspectListsWhatMoves) {
 TEST_F(MovingScene, InspectGivesTheBoundsOfSceneAndNodes) {
   const auto listing = [&](const std::vector<std::string>& sets) {
     std::vector<std::string> arguments{"inspect", "arm.gltf", "--json"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     return Json::parse(program_.run(arguments).out);
   };
   const Json base = listing({}), bent = listing({"scene.time=1"});

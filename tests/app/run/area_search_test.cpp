@@ -35,7 +35,7 @@ class AreaSearchRun : public testing::Test {
                 const std::string& machine = kMachine) {
     program_.write("machine.yaml", machine);
     words.insert(words.begin() + 1, "machine.yaml");
-    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    add_sets(words, sets);
     return program_.run(words);
   }
   Json run(const std::vector<std::string>& sets = {}) {

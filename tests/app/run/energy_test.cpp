@@ -35,7 +35,7 @@ class EnergyRun : public testing::Test {
   Json run(const std::string& shape, const std::vector<std::string>& sets = {}, const std::string& profile = "n45") {
     program_.write("machine.yaml", fmt::format(kMachine, shape, profile));
     std::vector<std::string> arguments{"run", "machine.yaml", "--out", "out", "--force", "--quiet"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome outcome = program_.run(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome.status == 0 ? Json::parse(program_.read("out/report.json")) : Json();
@@ -268,7 +268,7 @@ TEST_F(EnergyRun, ABudgetGivesTheLargestMachineWithinIt) {
 
   const auto refused = [&](const std::vector<std::string>& sets) {
     std::vector<std::string> arguments{"run", "machine.yaml", "--out", "refused"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome outcome = program_.run(arguments);
     EXPECT_EQ(outcome.status, 2);
     return outcome.err;

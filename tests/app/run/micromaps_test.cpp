@@ -30,7 +30,7 @@ class Micromaps : public testing::Test {
   Outcome try_run(const std::vector<std::string>& sets) {
     program_.write("machine.yaml", kMachine);
     std::vector<std::string> arguments{"run", "machine.yaml", "--out", "out", "--force", "--quiet", "--no-html"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     return program_.run(arguments);
   }
   Json run(const std::vector<std::string>& sets) {

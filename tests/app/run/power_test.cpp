@@ -28,7 +28,7 @@ class PowerRun : public testing::Test {
   Json run(const std::vector<std::string>& sets) {
     program_.write("machine.yaml", kMachine);
     std::vector<std::string> arguments{"run", "machine.yaml", "--out", "out", "--force", "--quiet"};
-    for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+    add_sets(arguments, sets);
     const Outcome outcome = program_.run(arguments);
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome.status == 0 ? Json::parse(program_.read("out/report.json")) : Json();

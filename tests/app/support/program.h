@@ -13,6 +13,11 @@ struct Outcome {
   std::string out, err;
 };
 
+/// Adds `--set` and each of the sets.
+inline void add_sets(std::vector<std::string>& arguments, const std::vector<std::string>& sets) {
+  for (const std::string& set : sets) arguments.insert(arguments.end(), {"--set", set});
+}
+
 /// The program running in a folder of its own; the tests' way to see what a user sees.
 class Program {
  public:

@@ -107,7 +107,7 @@ TEST_F(RayTime, OfALonelyRayIsItsLife) {
     const Json time = report(std::string(kMachine).replace(0, 0, "workload: {rays_from: ray.csv}\n"), sets)["ray_time"];
     std::vector<std::string> words{"follow", "machine.yaml", "--ray", "0",
                                    "--json", "--quiet",      "--set", "engine.kind=cycle"};
-    for (const std::string& set : sets) words.insert(words.end(), {"--set", set});
+    add_sets(words, sets);
     const Outcome outcome = program_.run(words);
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     const Json life = Json::parse(outcome.out);
