@@ -6,7 +6,8 @@
 namespace carousel {
 
 // Written here for the reason that exponential.h gives. The errors are a few units of the last place of a double, so
-// that results rounded to float are nearly always the nearest.
+// that results rounded to float are nearly always the nearest. Samples of paths take that of
+// shading/math/trigonometry.h: in float and of full turns, with no angle to reduce.
 
 struct SinCos64 {
   double sin, cos;

@@ -9,7 +9,8 @@ struct SinCos {
 };
 
 /// Sine and cosine of a number of full turns, |turns| < 2^20; the error is about 1e-7. Written here, because glibc
-/// picks another implementation of sinf and cosf on machines with fused multiply-add, whose last bit may differ.
+/// picks another implementation of sinf and cosf on machines with fused multiply-add, whose last bit may differ. For
+/// samples of paths; angles of files may be large, and take that of core/numeric/trigonometry.h.
 inline SinCos sin_cos_turns(float turns) {
   const float nearest = std::floor(turns * 4.0f + 0.5f);
   const float x = (turns - nearest * 0.25f) * 6.28318531f;  // in [-pi/4, pi/4]
