@@ -1,5 +1,7 @@
 """Runs of the program that are kept: each leaves a file in a folder, and is not done again while it stands there. So a
-study that is killed goes on where it was, in shards that may run side by side and end in time."""
+study that is killed goes on where it was, in shards that may run side by side and end in time. Each file tells the commit
+of its program: prices and times of others may be different."""
+import collections
 import csv
 import hashlib
 import json
@@ -18,6 +20,9 @@ from marked_tables import ROOT
 GUESS = (1.0, 3e-6, 5e-5)
 
 
+REFUSE, REDO, TAKE = "refuse", "redo", "take"  # what is done with kept runs of another commit
+
+
 class OutOfTime(Exception):
     """A run would not end in the time of its shard."""
 
@@ -30,6 +35,15 @@ def write(file, text):
         out.flush()
         os.fsync(out.fileno())
     part.rename(file)
+
+
+def commit_of(program):
+    """As the program tells it; `-dirty` where it was built from changed files."""
+    done = subprocess.run([program, "--version"], capture_output=True, text=True)
+    commits = [line.split()[1] for line in done.stdout.splitlines() if line.startswith("commit ")]
+    if len(commits) != 1:
+        sys.exit(f"{program} --version: expected a line with the commit, found: {done.stdout or done.stderr}")
+    return commits[0]
 
 
 class Lists:
@@ -66,16 +80,25 @@ class Lists:
 
 
 class Runs:
-    """`shard`: number, from 0, and count. `seconds`: no run is begun that would not end within this time."""
+    """`shard`: number, from 0, and count. `seconds`: no run is begun that would not end within this time. `others`: what is
+    done with kept runs of another commit."""
 
-    def __init__(self, program, folder, shard=(0, 1), seconds=float("inf")):
-        self.program, self.folder, self.shard = program, pathlib.Path(folder), shard
+    def __init__(self, program, folder, shard=(0, 1), seconds=float("inf"), others=REFUSE):
+        self.program, self.folder, self.shard, self.others = program, pathlib.Path(folder), shard, others
         self.end = time.monotonic() + seconds
+        self.commit = commit_of(program)
         self.folder.mkdir(parents=True, exist_ok=True)
-        self.lists = Lists(program, self.folder / "rays")
+        self.lists = Lists(program, self.folder / "rays" / self.commit)
         self.paces = []  # seconds over the guess, of the runs that have been timed
+        found = collections.Counter()
         for file in self.folder.glob("*.json"):
-            self.note(json.loads(file.read_text()))
+            kept = json.loads(file.read_text())
+            self.note(kept)
+            found[kept.get("commit", "unknown")] += 1
+        foreign = ", ".join(f"{number} of {commit}" for commit, number in sorted(found.items()) if commit != self.commit)
+        if foreign and others == REFUSE:
+            sys.exit(f"{self.folder}: keeps runs of other commits than {self.commit}: {foreign}. --others redo does them again, "
+                     "--others take takes them as they are, and --out names another folder")
 
     def note(self, kept):
         self.paces.append(kept["seconds"] / self.guess(kept["triangles"], kept["rays"]))
@@ -92,8 +115,15 @@ class Runs:
     def file(self, run):
         return self.folder / (hashlib.sha256(json.dumps(run).encode()).hexdigest()[:24] + ".json")
 
+    def has(self, run):
+        return self.file(run).exists() and (self.others != REDO or self.read(run).get("commit") == self.commit)
+
     def missing(self, runs):
-        return [run for run in runs if not self.file(run).exists()]
+        return [run for run in runs if not self.has(run)]
+
+    def commits(self, runs):
+        """Those of kept runs."""
+        return sorted({self.read(run).get("commit", "unknown") for run in runs})
 
     def mine(self, runs):
         return [run for index, run in enumerate(runs) if index % self.shard[1] == self.shard[0]]
@@ -123,7 +153,7 @@ class Runs:
         if done.returncode != 0:
             sys.exit(f"{run['config']} {' '.join(keys)}: {done.stderr}")
         report = json.loads(done.stdout)
-        kept = {"run": run, "seconds": time.monotonic() - began, "triangles": run["triangles"],
+        kept = {"run": run, "commit": self.commit, "seconds": time.monotonic() - began, "triangles": run["triangles"],
                 "digest": report["digest"], "cycles": report["engine"]["cycles"], "rays": report["rays"]["completed"],
                 "nj_per_ray": report["energy"]["nj_per_ray"], "mm2": report["area"]["mm2"],
                 "resources": report["config"]["topology"]["resources"],

@@ -17,6 +17,9 @@ STUDY = ROOT / "bench/studies/when_it_pays"
 # gives a call other hits. Thousands of calls: it starts without what Python searches, and imports little.
 PROGRAM = f"#!{sys.executable} -IS\n" + '''
 import json, os, signal, sys, zlib
+if sys.argv[1:] == ["--version"]:
+    print("carousel 1\\ncommit", os.environ.get("COMMIT", "abc12345"))
+    sys.exit(0)
 calls = os.path.dirname(os.path.abspath(__file__)) + "/calls"
 with open(calls, "a+") as file:
     file.write(json.dumps(sys.argv[1:]) + "\\n")
@@ -109,6 +112,38 @@ class WhenItPays(unittest.TestCase):
         self.assertEqual(self.calls(), [])
         self.assertRegex(counted.stderr, r"\d+ runs are left of 0 for tuning and \d+ for the map, some \d+\.\d hours")
 
+    def test_runs_of_another_commit_are_not_taken_unasked(self):
+        whole = self.study()
+        runs = len(self.calls())
+        self.assertEqual(whole.returncode, 0, whole.stderr)
+        refused = self.study(COMMIT="def67890")
+        self.assertEqual((refused.returncode, refused.stdout), (1, ""))
+        self.assertIn(f"keeps runs of other commits than def67890: {runs} of abc12345", refused.stderr)
+        taken = self.study("--others", "take", COMMIT="def67890")
+        self.assertEqual((taken.returncode, taken.stdout), (0, whole.stdout))
+        self.assertEqual(self.calls(), [])
+        late = self.study("--others", "redo", COMMIT="def67890", KILL_AT="20")
+        self.assertEqual(late.returncode, -signal.SIGKILL)
+        self.assertEqual(len(self.calls()), 20)
+        redone = self.study("--others", "redo", COMMIT="def67890")
+        self.assertEqual((redone.returncode, redone.stdout), (0, whole.stdout))
+        kept = [json.loads(file.read_text()) for file in (self.path / "out").glob("*.json")]
+        self.assertEqual([one["commit"] for one in kept], ["def67890"] * runs)
+        self.assertEqual(self.study(COMMIT="def67890").returncode, 0)
+        # Of a file that tells no commit nothing is known.
+        file = next((self.path / "out").glob("*.json"))
+        file.write_text(json.dumps({key: value for key, value in kept[0].items() if key != "commit"}))
+        self.assertIn("1 of unknown", self.study(COMMIT="def67890").stderr)
+
+    def test_a_map_grows_seed_by_seed(self):
+        self.assertIn("expected 2 to 2 with this grid", self.study("--seeds", "1").stderr)
+        self.assertEqual(self.study("--seeds", "2").stdout, self.study().stdout)
+        self.assertIn("expected 2 to 5", self.study("--grid", "small", "--seeds", "6").stderr)
+        left = [int(re.search(r"(\d+) for the map", self.study("--grid", "small", "--count", *seeds).stderr)[1])
+                for seeds in (["--seeds", "2"], ["--seeds", "3"], [])]
+        self.assertEqual(left[1] - left[0], 8 * 9 * 6, "frames, sizes and channels, kinds")
+        self.assertEqual(left[2] - left[1], 2 * 8 * 9 * 6)
+
     def test_other_hits_are_told(self):
         lie = self.study(LIE_AT="7")
         self.assertEqual(lie.returncode, 1)
@@ -117,7 +152,7 @@ class WhenItPays(unittest.TestCase):
     def test_lists_hold_one_kind_of_rays(self):
         self.assertEqual(self.study().returncode, 0)
         for kind, name in (("shadow", "shadow"), ("bounce", "shuffled")):
-            files = sorted((self.path / "out/rays").glob(f"*-{name}-*.csv"))
+            files = sorted((self.path / "out/rays/abc12345").glob(f"*-{name}-*.csv"))
             self.assertEqual(len(files), 2, "a list for each seed")
             rows = [line.split(",") for line in files[0].read_text().splitlines()[1:]]
             self.assertEqual({row[1] for row in rows}, {kind})
