@@ -128,6 +128,7 @@ class NativeRun {
       } else if (gate != nullptr ? gate->ended() : parts_.at_rest()) {
         break;
       }
+      if (!moved) threads_.note_look(thread);
       schedule_point();
       if (moved || Schedule::current() != nullptr) continue;
       if (idle == 0 && gate != nullptr) idle_since = Clock::now();
@@ -141,10 +142,12 @@ class NativeRun {
     end_wait();
   }
 
-  /// Runs on the calling thread: reports progress, and looks for the request to stop and for a run that is stuck.
+  /// Runs on the calling thread: reports progress, and looks for the request to stop and for a run that is stuck. Time in
+  /// which a thread never came to look for work, on a busy host, counts a sixth: that thread may hold what others wait for.
   void watch() {
     std::uint64_t last = 0;
-    Clock::time_point last_change = Clock::now();
+    Clock::time_point last_look = Clock::now();
+    Clock::duration nothing_moved{0};
     const std::chrono::milliseconds interval(parts_.ledger() != nullptr ? 10 : 100);
     const auto pause = series_.on() ? std::min(interval, NativeSeries::kPollInterval) : interval;
     Clock::time_point next_check = Clock::now() + interval;
@@ -153,13 +156,17 @@ class NativeRun {
       if (Clock::now() < next_check) return;
       next_check = Clock::now() + interval;
       if (options_.progress) options_.progress(parts_.count().completed.load(std::memory_order_relaxed));
+      const Clock::time_point now = Clock::now();
+      const bool all_looked = threads_.all_have_looked();
       const std::uint64_t steps = threads_.steps();
       if (steps != last || (parts_.gate() != nullptr && parts_.at_rest())) {  // with nothing to do it waits for others
         last = steps;
-        last_change = Clock::now();
-      } else if (Clock::now() - last_change > options_.stuck_after) {
-        stuck_ = true;
+        nothing_moved = {};
+      } else {
+        nothing_moved += all_looked ? now - last_look : (now - last_look) / 6;
+        stuck_ = nothing_moved > options_.stuck_after;
       }
+      last_look = now;
       if (stuck_ || silent() || options_.stop.stop_requested()) threads_.end();
     });
   }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "ringbus/schedule/schedule.h"
@@ -60,6 +61,17 @@ class WorkerThreads {
   /// A thread has moved something. It alone may call.
   // Relaxed: the watcher only wants to see it change.
   void note_step(std::size_t thread) { progress_[thread].steps.fetch_add(1, std::memory_order_relaxed); }
+  /// A thread has looked for something to move, and found nothing. It alone may call.
+  void note_look(std::size_t thread) { progress_[thread].looks.fetch_add(1, std::memory_order_relaxed); }
+  /// Whether each has looked since the last call. Only who watches may call.
+  bool all_have_looked() {
+    bool all = true;
+    for (std::size_t t = 0; t < threads_; ++t) {
+      const std::uint64_t looks = progress_[t].looks.load(std::memory_order_relaxed);
+      all = all && looks != std::exchange(progress_[t].looks_seen, looks);
+    }
+    return all;
+  }
   /// A thread has had nothing to do for so long. It alone may call.
   void note_waited(std::size_t thread, std::chrono::nanoseconds time) { progress_[thread].waited += time; }
   /// Steps noted so far by all.
@@ -78,6 +90,8 @@ class WorkerThreads {
  private:
   struct alignas(128) Progress {
     std::atomic<std::uint64_t> steps{0};
+    std::atomic<std::uint64_t> looks{0};
+    std::uint64_t looks_seen = 0;  // of who watches
     std::chrono::nanoseconds waited{0};
   };
 
