@@ -142,8 +142,9 @@ class NativeRun {
     end_wait();
   }
 
-  /// Runs on the calling thread: reports progress, and looks for the request to stop and for a run that is stuck. Time in
-  /// which a thread never came to look for work, on a busy host, counts a sixth: that thread may hold what others wait for.
+  /// Runs on the calling thread: reports progress, and looks for the request to stop and for a run that is stuck. Time
+  /// in which a thread never came to look for work, on a busy host, counts a sixth: that thread may hold what others
+  /// wait for.
   void watch() {
     std::uint64_t last = 0;
     Clock::time_point last_look = Clock::now();

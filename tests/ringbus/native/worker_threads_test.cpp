@@ -43,6 +43,20 @@ TEST(WorkerThreads, EndWhenTheWatcherAsks) {
   EXPECT_EQ(threads.waited(), std::chrono::duration<double>(1));
 }
 
+// A thread that gets no turn, as here the second one, may hold what the others wait for.
+TEST(WorkerThreads, SayWhetherEachHasLooked) {
+  WorkerThreads threads(2);
+  EXPECT_FALSE(threads.all_have_looked());
+  threads.note_look(0);
+  EXPECT_FALSE(threads.all_have_looked());
+  threads.note_look(0);
+  threads.note_look(1);
+  EXPECT_TRUE(threads.all_have_looked());
+  EXPECT_FALSE(threads.all_have_looked());
+  threads.note_look(1);
+  EXPECT_FALSE(threads.all_have_looked());
+}
+
 TEST(WorkerThreads, TheFirstExceptionEndsAll) {
   WorkerThreads threads(2);
   const auto body = [&](std::size_t t) {
