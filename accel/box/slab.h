@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cmath>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -52,10 +52,11 @@ struct SlabRay {
     std::memcpy(origin, &o, sizeof(o));
     std::memcpy(inverse_near, &near, sizeof(near));
     std::memcpy(inverse_far, &far, sizeof(far));
+    // By arithmetic: compilers make a branch of a conditional, and the signs of bounce rays are hard to guess.
     for (std::uint32_t axis = 0; axis < 3; ++axis) {
-      const bool negative = std::signbit(ray.direction[static_cast<int>(axis)]);
-      near_row[axis] = (negative ? axis + 3 : axis) * kRowBytes;
-      far_row[axis] = (negative ? axis : axis + 3) * kRowBytes;
+      const std::uint32_t negative = std::bit_cast<std::uint32_t>(ray.direction[static_cast<int>(axis)]) >> 31;
+      near_row[axis] = (axis + 3 * negative) * kRowBytes;
+      far_row[axis] = (axis + 3 - 3 * negative) * kRowBytes;
     }
   }
 };

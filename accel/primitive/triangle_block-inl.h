@@ -98,6 +98,17 @@ HWY_INLINE bool update_closest(const Accel& accel, const TriangleBlock& block, c
   return changed;
 }
 
+/// True if the ray enters the box of a triangle in `inside` before tmax.
+template <class Slab>
+HWY_INLINE bool enters_any(const OwnBoxes<Slab>& boxes, std::uint32_t inside, float tmax) {
+  bool any = false;
+  for (; inside != 0; inside &= inside - 1) {
+    float entry;
+    any |= boxes.enters(static_cast<std::size_t>(std::countr_zero(inside)), tmax, entry);
+  }
+  return any;
+}
+
 /// As update_closest(), for crossings that have been decided in float. Crossings whose box may hold the closest hit
 /// compete with distances and weights computed in double. A hit that the float puts ahead of the ray's start stays a
 /// hit, at the start or at the largest float if need be: the rounding that moved it there has moved the surface that
@@ -106,6 +117,7 @@ template <class Slab>
 HWY_NOINLINE bool update_closest_precisely(const Accel& accel, const TriangleBlock& block,
                                            const Crossings<float>& crossings, const LocalRay<Slab>& ray, Hit& hit) {
   const OwnBoxes<Slab> boxes(ray.slab, block);
+  if (nearest_of(*ray.record) == nullptr && !enters_any(boxes, crossings.inside, hit.t)) return false;
   const PreciseCrossings precise(ray.triangle.watertight, block);
   note_strays(block, crossings, boxes, ray, [&](std::size_t l) {
     Hit found;

@@ -1,6 +1,8 @@
 #pragma once
 
-#include <cmath>
+#include <bit>
+#include <cstdint>
+#include <limits>
 
 #include "core/types/ray.h"
 
@@ -18,12 +20,17 @@ struct WatertightRay {
 
   [[gnu::always_inline]] explicit WatertightRay(const Ray& ray) : origin{ray.origin.x, ray.origin.y, ray.origin.z} {
     const Vec3& d = ray.direction;
-    // Selections and a table instead of branches, which bounce rays would mispredict.
-    const float ax = std::fabs(d.x), ay = std::fabs(d.y), az = std::fabs(d.z);
-    const int larger = ay >= ax ? 1 : 0;
-    kz = az >= (larger ? ay : ax) ? 2 : larger;
+    // Arithmetic and a table instead of branches, which bounce rays would mispredict: absolute values are in the order
+    // of their bits, and compilers make branches of comparisons.
+    const auto size = [](float x) { return std::bit_cast<std::int32_t>(x) & std::numeric_limits<std::int32_t>::max(); };
+    const auto is_most = [](std::int32_t a, std::int32_t b) { return std::bit_cast<std::uint32_t>(b - a - 1) >> 31; };
+    const std::int32_t x = size(d.x), y = size(d.y), z = size(d.z);
+    const auto along_y = static_cast<std::int32_t>(is_most(y, x));
+    const auto along_z = static_cast<std::int32_t>(is_most(z, x + ((y - x) & -along_y)));
+    kz = along_z << 1 | (along_y & ~along_z);
     static constexpr int kAfter[2][3][2] = {{{1, 2}, {2, 0}, {0, 1}}, {{2, 1}, {0, 2}, {1, 0}}};
-    const int* const after = kAfter[d[kz] < 0.0f][kz];  // swapped when the ray runs backwards: keeps the winding
+    const int* const after = kAfter[std::bit_cast<std::uint32_t>(d[kz]) >> 31]
+                                   [kz];  // swapped when the ray runs backwards: keeps the winding
     kx = after[0];
     ky = after[1];
     direction[0] = d[kx], direction[1] = d[ky], direction[2] = d[kz];
