@@ -46,7 +46,8 @@ void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& member
 
 /// Traces each member as trace_subtree() does, but all of them together, with a list of rays at each node. Faster where
 /// lists stay long: below a node of a few hundred triangles a ray. Counts differ a little, as nodes are met in another
-/// order. Structures with more than boxes in their nodes, or boxes in double, go as by trace_interleaved().
+/// order. Structures with more than boxes in their nodes, or boxes in double, go as by trace_interleaved(), and so does
+/// everything where registers hold fewer than sixteen floats.
 void trace_stream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
 /// Names of the SIMD targets this program was built for and this machine has, best first.

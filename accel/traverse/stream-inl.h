@@ -1,10 +1,10 @@
-// Traversal of many rays together: a list of rays at each node. The rays of a list are tested against the boxes of the
-// node one after another, and the list is split among the children, without a choice that the processor would have to
+// Traversal of many rays together: a list of rays at each node. A register full of rays of a list is tested against
+// each box of the node, and the list is split among the children, without a choice that the processor would have to
 // guess (Barringer, Akenine-Moeller 2014, "Dynamic ray stream traversal"). Lists are visited depth first, those with
 // the nearest entries first. Rays that are few at a node go on by themselves, several in turn.
 //
-// A lane is a box. With a ray a lane, which gathers what the tests need of eight rays, the same lists took 1.03 times
-// as long (docs/internals/performance.md).
+// With registers of fewer than sixteen lanes that takes longer than all rays by themselves
+// (docs/internals/performance.md).
 #if defined(CAROUSEL_ACCEL_STREAM_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CAROUSEL_ACCEL_STREAM_INL_H_
 #undef CAROUSEL_ACCEL_STREAM_INL_H_
@@ -12,6 +12,8 @@
 #define CAROUSEL_ACCEL_STREAM_INL_H_
 #endif
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -19,43 +21,23 @@
 #include <hwy/highway.h>
 
 #include "accel/traverse/interleaved-inl.h"
+#include "accel/traverse/ray_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
 inline constexpr std::uint32_t kStreamRays = 512;     ///< rays under way together; more are taken in turns
-inline constexpr std::uint32_t kStreamRoom = 16'384;  ///< places in lists
+inline constexpr std::uint32_t kStreamRoom = 32'768;  ///< places in lists
 inline constexpr std::uint32_t kFewRays = 8;          ///< a shorter list is not split
+inline constexpr std::uint32_t kFewRaysOfLeaf = 3;    ///< a shorter list is tested ray by ray
 inline constexpr std::uint32_t kLaterRays = 32;       ///< rays of short lists that wait for one another
 
-/// The part of a ray that its box tests read, in one cache line.
-struct alignas(64) StreamRay {
-  float origin[3], near[3], far[3];
-  float tmin;
-  float tmax;  ///< the hit's distance, or -inf once no hit is wanted any more
-  std::uint8_t near_row[3], far_row[3];
+#if HWY_MAX_BYTES >= 64
 
-  HWY_INLINE StreamRay(const SlabRay& slab, float end) : tmin(slab.tmin), tmax(end) {
-    static_assert(6 * SlabRay::kRowBytes <= 256, "offsets of rows are bytes");
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis] = slab.origin[axis];
-      near[axis] = slab.inverse_near[axis];
-      far[axis] = slab.inverse_far[axis];
-      near_row[axis] = static_cast<std::uint8_t>(slab.near_row[axis]);
-      far_row[axis] = static_cast<std::uint8_t>(slab.far_row[axis]);
-    }
-  }
-};
-
-/// A ray of a list, and where it enters the list's node.
-struct StreamItem {
-  std::uint32_t ray;
-  float entry;
-};
-
-/// The rays that are to visit a node: `count` places from `begin` on. Places from `free` on hold no list that is left.
+/// The rays that are to visit a node: `count` places from `begin` on, and room for a register's more. Places from
+/// `free` on hold no list that is left. `changes` of hits were made before the list.
 struct StreamList {
-  std::uint32_t ref, begin, count, free;
+  std::uint32_t ref, begin, count, free, changes;
 };
 
 /// The storage of a stream, for one thread. Nothing of it is initialised.
@@ -66,11 +48,13 @@ struct StreamStorage {
   FrameStorage<SlabRay> frames[kStreamRays];
   RayRecord* records[kStreamRays];
   bool any_hit[kStreamRays];
-  StreamItem items[kStreamRoom];
+  // The places: numbers of rays, and where they enter the list's node.
+  std::uint32_t ids[kStreamRoom + kMostRayLanes];
+  float entries[kStreamRoom + kMostRayLanes];
   StreamList lists[kStackCapacity];
   struct {
-    StreamItem item;
-    std::uint32_t ref;
+    std::uint32_t ray, ref;
+    float entry;
   } later[kLaterRays];
   StreamStorage() {}
 };
@@ -85,7 +69,7 @@ class Stream {
   void trace(NodeKey key, const RayMembers& members, std::size_t& next) {
     const std::uint32_t count = load(key, members, next);
     StreamList* top = s_.lists;
-    *top++ = {key.ref.bits(), 0, count, count};
+    *top++ = {key.ref.bits(), 0, count, count + kMostRayLanes, changes_};
     // Above the instances no two walkers may have the same ray: each sets the instance of its frame.
     StreamList* const outside = s_.lists + kStackCapacity;
     StreamList* inside = key.instance != kNoInstance ? s_.lists : outside;  // lists from here on are below an instance
@@ -95,13 +79,13 @@ class Stream {
         walk();
         inside = outside;
       }
-      list.count = keep(list);
+      if (list.changes != changes_) list.count = keep(list);
       if (list.count == 0) continue;
       const NodeRef ref = NodeRef::from_bits(list.ref);
       if (HWY_UNLIKELY(ref.is_instance())) {
         if (NodeRef root = ref; enter(list, root)) {
           inside = top;
-          *top++ = {root.bits(), list.begin, list.count, list.free};
+          *top++ = {root.bits(), list.begin, list.count, list.free, changes_};
         } else {
           put_off(list);
         }
@@ -121,14 +105,14 @@ class Stream {
   HWY_NOINLINE std::uint32_t load(NodeKey key, const RayMembers& members, std::size_t& next) {
     std::uint32_t n = 0;
     while (next < members.count && n < kStreamRays) {
-      RayRecord& record = member<8>(members, next++);
+      RayRecord& record = member<16>(members, next++);
       if (record.tag.flags & kRayDone) continue;
       LocalRay<SlabRay>* const frame = &s_.frames[n].ray;
       enter_frame(accel_, key.instance, record, frame, counts_);
-      new (&s_.rays[n]) StreamRay(frame->slab, record.hit.t);
+      new (&s_.rays[n]) StreamRay(*frame, record.hit.t);
       s_.records[n] = &record;
       s_.any_hit[n] = takes_any_hit(record.tag);
-      s_.items[n] = {n, frame->slab.tmin};
+      s_.ids[n] = n, s_.entries[n] = frame->slab.tmin;
       ++n;
     }
     return n;
@@ -136,28 +120,78 @@ class Stream {
 
   /// Drops the rays that have found something nearer, and returns how many are left.
   HWY_INLINE std::uint32_t keep(const StreamList& list) {
-    StreamItem* const items = s_.items + list.begin;
+    const RayTag d;
+    const hn::RebindToUnsigned<RayTag> du;
+    const hn::RebindToSigned<RayTag> di;
+    std::uint32_t* const ids = s_.ids + list.begin;
+    float* const entries = s_.entries + list.begin;
     std::uint32_t left = 0;
-    for (std::uint32_t i = 0; i < list.count; ++i) {
-      const StreamItem item = items[i];
-      items[left] = item;
-      left += !(item.entry > s_.rays[item.ray].tmax);
+    fill_up(list);
+    for (std::uint32_t i = 0; i < list.count; i += kRayLanes) {
+      const auto id = hn::LoadU(du, ids + i);
+      const auto entry = hn::LoadU(d, entries + i);
+      const auto end = hn::GatherIndex(d, &s_.rays[0].tmax, hn::BitCast(di, hn::ShiftLeft<4>(id)));
+      const auto stays = hn::And(hn::Not(hn::Gt(entry, end)), hn::FirstN(d, list.count - i));
+      hn::StoreU(hn::Compress(id, hn::RebindMask(du, stays)), du, ids + left);
+      hn::StoreU(hn::Compress(entry, stays), d, entries + left);
+      left += static_cast<std::uint32_t>(hn::CountTrue(d, stays));
     }
     return left;
   }
+
+  /// Names some ray in the places behind the list.
+  HWY_INLINE void fill_up(const StreamList& list) {
+    const hn::RebindToUnsigned<RayTag> du;
+    hn::StoreU(hn::Set(du, s_.ids[list.begin]), du, s_.ids + list.begin + list.count);
+  }
+
+  /// The rays of the list from the `i`-th on.
+  struct Rows {
+    const StreamRay* at[kRayLanes];
+    HWY_INLINE Rows(const StreamStorage& s, const StreamList& list, std::uint32_t i) {
+      for (std::size_t lane = 0; lane < kRayLanes; ++lane) at[lane] = &s.rays[s.ids[list.begin + i + lane]];
+    }
+  };
 
   /// The ray's range after a test.
   HWY_INLINE void note(std::uint32_t ray) {
     const Hit& hit = s_.records[ray]->hit;
     s_.rays[ray].tmax = s_.any_hit[ray] && hit.valid() ? -kInfinity : hit.t;
+    ++changes_;
   }
 
-  HWY_INLINE void test(NodeRef leaf, const StreamList& list) {
-    for (std::uint32_t i = list.begin; i < list.begin + list.count; ++i) {
-      const std::uint32_t ray = s_.items[i].ray;
-      count_leaf(leaf, counts_);
-      if (test_leaf(accel_, leaf, ~0u, s_.frames[ray].ray, s_.records[ray]->hit)) note(ray);
+  HWY_NOINLINE void test(NodeRef leaf, const StreamList& list) {
+    const bool in_lanes = accel_.accuracy.triangle == TriangleLevel::kWatertight && !leaf.is_procedural();
+    if (!in_lanes || list.count < kFewRaysOfLeaf) {
+      for (std::uint32_t i = list.begin; i < list.begin + list.count; ++i) {
+        const std::uint32_t ray = s_.ids[i];
+        count_leaf(leaf, counts_);
+        if (test_leaf(accel_, leaf, ~0u, s_.frames[ray].ray, s_.records[ray]->hit)) note(ray);
+      }
+      return;
     }
+    counts_.triangle += std::uint64_t{leaf.triangles()} * list.count;
+    fill_up(list);
+    for (std::uint32_t i = 0; i < list.count; i += kRayLanes) {
+      const Rows rows(s_, list, i);
+      const TriangleLanes lanes(rows.at);
+      const std::uint32_t all = ray_bits(hn::FirstN(RayTag(), list.count - i));
+      for (std::uint32_t b = 0; b < leaf.blocks(); ++b) {
+        const TriangleBlock& block = accel_.blocks[leaf.first_block() + b];
+        const std::uint32_t triangles =
+            std::min(leaf.triangles() - b * kBlockTriangles, std::uint32_t{kBlockTriangles});
+        RayMask crossing = lanes.may_cross(block, 0);
+        for (std::uint32_t l = 1; l < triangles; ++l) crossing = hn::Or(crossing, lanes.may_cross(block, l));
+        for (std::uint32_t left = ray_bits(crossing) & all; left != 0; left &= left - 1) {
+          const std::uint32_t ray = s_.ids[list.begin + i + static_cast<std::uint32_t>(std::countr_zero(left))];
+          if (test_block(block, s_.frames[ray].ray, s_.records[ray]->hit)) note(ray);
+        }
+      }
+    }
+  }
+
+  HWY_NOINLINE bool test_block(const TriangleBlock& block, const LocalRay<SlabRay>& frame, Hit& hit) {
+    return watertight_block(accel_, block, ~0u, frame, hit);
   }
 
   /// enter_instance() for a list.
@@ -165,20 +199,20 @@ class Stream {
     const NodeRef instance = ref;
     for (std::uint32_t i = list.begin; i < list.begin + list.count; ++i) {
       ref = instance;
-      if (!enter_instance(accel_, ref, s_.frames[s_.items[i].ray].ray)) return false;
+      if (!enter_instance(accel_, ref, s_.frames[s_.ids[i]].ray)) return false;
     }
     return true;
   }
 
   HWY_INLINE bool is_split(NodeRef ref, const StreamList& list) const {
-    return list.count >= kFewRays && list.free + kMaxWidth * list.count <= kStreamRoom &&
+    return list.count >= kFewRays && list.free + kMaxWidth * (list.count + kMostRayLanes) <= kStreamRoom &&
            accel_.nodes[ref.node()].direct == 0;
   }
 
   /// Lets the rays of a list wait for others that go on by themselves.
   HWY_INLINE void put_off(const StreamList& list) {
     for (std::uint32_t i = list.begin; i < list.begin + list.count; ++i) {
-      s_.later[later_++] = {s_.items[i], list.ref};
+      s_.later[later_++] = {s_.ids[i], list.ref, s_.entries[i]};
       if (later_ == kLaterRays) walk();
     }
     prefetch(accel_, NodeRef::from_bits(list.ref));
@@ -191,8 +225,8 @@ class Stream {
         [&](Walker<SlabRay>& walker, std::size_t, NodeRef& from) HWY_ATTR {
           while (next < later_) {
             const auto& start = s_.later[next++];
-            const std::uint32_t ray = start.item.ray;
-            if (start.item.entry > s_.rays[ray].tmax) continue;
+            const std::uint32_t ray = start.ray;
+            if (start.entry > s_.rays[ray].tmax) continue;
             walker.ray = ray;
             walker.frame = &s_.frames[ray].ray;
             walker.record = s_.records[ray];
@@ -209,67 +243,50 @@ class Stream {
   /// Tests the rays of `list` against the node's boxes, and pushes the children's lists, the nearest on top by the mean
   /// of its entries.
   HWY_NOINLINE StreamList* split(const Node& node, const StreamList& list, StreamList* top) {
-    const SlabLanes::Tag d;
-    const hn::RebindToUnsigned<SlabLanes::Tag> du;
-    constexpr std::size_t kLanes = hn::MaxLanes(d);
-    StreamItem* out[kMaxWidth];
-    for (std::uint32_t c = 0; c < kMaxWidth; ++c) out[c] = s_.items + list.free + c * list.count;
-    SlabLanes::Vec sum[kMaxWidth / kLanes];
-    for (SlabLanes::Vec& each : sum) each = hn::Zero(d);
-    const std::uint32_t lanes = child_lanes(node);
-    const char* const planes = reinterpret_cast<const char*>(&node.plane[0][0]);
-    const auto plane = [&](std::uint8_t row, std::size_t i)
-                           HWY_ATTR { return hn::Load(d, reinterpret_cast<const float*>(planes + row) + i); };
-    for (std::uint32_t i = list.begin; i < list.begin + list.count; ++i) {
-      const std::uint32_t id = s_.items[i].ray;
-      const StreamRay& ray = s_.rays[id];
-      std::uint32_t mask = 0;
-      alignas(64) StreamItem met[kMaxWidth];
-      // Operation for operation what slab_node() does.
-      for (std::size_t l = 0; l < kMaxWidth; l += kLanes) {
-        auto near = hn::Set(d, ray.tmin), far = hn::Set(d, ray.tmax);
-        for (int axis = 0; axis < 3; ++axis) {
-          const auto origin = hn::Set(d, ray.origin[axis]);
-          near = keep_max(hn::Mul(hn::Sub(plane(ray.near_row[axis], l), origin), hn::Set(d, ray.near[axis])), near);
-          far = keep_min(hn::Mul(hn::Sub(plane(ray.far_row[axis], l), origin), hn::Set(d, ray.far[axis])), far);
-        }
-        const auto hit = hn::Le(near, far);
-        sum[l / kLanes] = hn::Add(sum[l / kLanes], hn::IfThenElseZero(hit, near));
-        hn::StoreInterleaved2(hn::BitCast(d, hn::Set(du, id)), near, d, reinterpret_cast<float*>(met + l));
-        std::uint8_t bits[8] = {};
-        hn::StoreMaskBits(d, hit, bits);
-        mask |= std::uint32_t{bits[0]} << l;
-      }
-      mask &= lanes;
-      // Every child's list is written, and grows if the ray meets it.
-#pragma GCC unroll 8
-      for (int c = 0; c < kMaxWidth; ++c) {
-        *out[c] = met[c];
-        out[c] += mask >> c & 1u;
+    const RayTag d;
+    const hn::RebindToUnsigned<RayTag> du;
+    const std::uint32_t room = list.count + kMostRayLanes;
+    std::uint32_t ends[kMaxWidth];
+    RayVec sums[kMaxWidth];
+    for (std::uint32_t c = 0; c < kMaxWidth; ++c) {
+      ends[c] = list.free + c * room;
+      sums[c] = hn::Zero(d);
+    }
+    fill_up(list);
+    for (std::uint32_t i = 0; i < list.count; i += kRayLanes) {
+      const Rows rows(s_, list, i);
+      const BoxLanes lanes(rows.at);
+      const auto all = hn::FirstN(d, list.count - i);
+      const auto ids = hn::LoadU(du, s_.ids + list.begin + i);
+      for (std::uint32_t c = 0; c < node.count; ++c) {
+        RayVec entry;
+        const auto met = hn::And(lanes.meet(node, c, entry), all);
+        hn::StoreU(hn::Compress(ids, hn::RebindMask(du, met)), du, s_.ids + ends[c]);
+        hn::StoreU(hn::Compress(entry, met), d, s_.entries + ends[c]);
+        sums[c] = hn::Add(sums[c], hn::IfThenElseZero(met, entry));
+        ends[c] += static_cast<std::uint32_t>(hn::CountTrue(d, met));
       }
     }
     counts_.box += std::uint64_t{node.count} * list.count;
-    alignas(64) float sums[kMaxWidth];
-    for (std::size_t l = 0; l < kMaxWidth; l += kLanes) hn::Store(sum[l / kLanes], d, sums + l);
-    return push_children(node, list, out, sums, top);
+    return push_children(node, list, ends, sums, top);
   }
 
-  HWY_INLINE StreamList* push_children(const Node& node, const StreamList& list, StreamItem* const* ends,
-                                       const float* sums, StreamList* top) {
+  HWY_INLINE StreamList* push_children(const Node& node, const StreamList& list, const std::uint32_t* ends,
+                                       const RayVec* sums, StreamList* top) {
+    const RayTag d;
     StreamList* const bottom = top;
     float means[kMaxWidth];
-    const std::uint32_t free = list.free + kMaxWidth * list.count;
+    const std::uint32_t room = list.count + kMostRayLanes, free = list.free + kMaxWidth * room;
     for (std::uint32_t c = 0; c < node.count; ++c) {
-      const std::uint32_t begin = list.free + c * list.count;
-      const auto count = static_cast<std::uint32_t>(ends[c] - (s_.items + begin));
+      const std::uint32_t begin = list.free + c * room, count = ends[c] - begin;
       if (count == 0) continue;
-      const float mean = sums[c] / static_cast<float>(count);
+      const float mean = hn::GetLane(hn::SumOfLanes(d, sums[c])) / static_cast<float>(count);
       std::ptrdiff_t at = top++ - bottom;
       for (; at > 0 && means[at - 1] < mean; --at) {
         bottom[at] = bottom[at - 1];
         means[at] = means[at - 1];
       }
-      bottom[at] = {node.child[c].bits(), begin, count, free};
+      bottom[at] = {node.child[c].bits(), begin, count, free, changes_};
       means[at] = mean;
       prefetch(accel_, node.child[c]);
     }
@@ -281,6 +298,7 @@ class Stream {
   TraversalCounts& counts_;
   TraceStacks stacks_;
   std::uint32_t later_ = 0;
+  std::uint32_t changes_ = 0;  // of hits
 };
 
 /// Traces the members together, each through everything below `key`, in a structure of plain nodes.
@@ -291,6 +309,11 @@ inline void trace_in_stream(const Accel& accel, NodeKey key, const RayMembers& m
   for (std::size_t next = 0; next < members.count;) stream.trace(key, members, next);
   total += counts;
 }
+#else
+inline void trace_in_stream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& total) {
+  trace_in_turn<Nodes::kPlain, SlabRay>(accel, key, members, total);
+}
+#endif
 
 }  // namespace carousel::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();

@@ -1,7 +1,10 @@
 #pragma once
 
 #include <cstddef>
+#include <vector>
 
+#include "accel/traverse/kernels.h"
+#include "accel/traverse/ray_check.h"
 #include "accel/traverse/reference_tracer.h"
 #include "accel/traverse/verifying_workload.h"
 #include "tests/accel/traverse/brute_force.h"
@@ -17,10 +20,10 @@ class BruteForceAnswers {
     for (const RayRequest& ray : rays)
       expected_.push_back({ray.ray, brute_force(scene, ray, accuracy, any_hit), ray.tag});
   }
-  /// How many answers of the structure are others, one ray after another and interleaved.
+  /// How many answers of the structure are others, one ray after another, interleaved and in lists.
   std::size_t differences(const Accel& accel) const {
     std::size_t differences = 0;
-    for (auto* const tracer : {trace_depth_first, trace_depth_first_interleaved}) {
+    for (auto* const tracer : {trace_depth_first, trace_depth_first_interleaved, trace_in_lists}) {
       HitBatch got;
       IntersectionCounts counts;
       tracer(accel, rays_, got, counts);
@@ -35,6 +38,13 @@ class BruteForceAnswers {
   }
 
  private:
+  static void trace_in_lists(const Accel& accel, const RayBatch& rays, HitBatch& out, IntersectionCounts& counts) {
+    std::vector<RayRecord> records(rays.size());
+    for (std::size_t i = 0; i < rays.size(); ++i) start_record(rays[i], records[i]);
+    trace_stream(accel, accel.root_key(), {.records = records.data(), .count = records.size()}, counts);
+    for (const RayRecord& record : records) finish_record(record, out);
+  }
+
   RayBatch rays_;
   HitBatch expected_;
 };
