@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <type_traits>
 
 #include <hwy/highway.h>
 
@@ -17,6 +18,7 @@
 #include "accel/primitive/nearest_ray.h"
 #include "accel/traverse/depth_first-inl.h"
 #include "accel/traverse/members-inl.h"
+#include "accel/traverse/ray_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
@@ -50,6 +52,47 @@ HWY_NOINLINE void test_direct(const Accel& accel, const Node& node, NodeKey key,
   counts += own;
 }
 
+inline constexpr std::size_t kFewestInLanes = 8;  ///< fewer rays are tested one by one
+
+#if HWY_TARGET != HWY_SCALAR
+/// test_boxes() for nodes of boxes alone and rays in the world's frame: as many rays together as a register holds.
+HWY_INLINE void test_boxes_in_lanes(const Node& node, std::uint32_t children, float widening, const RayMembers& members,
+                                    const StripHits& hits, IntersectionCounts& counts) {
+  const RayTag d;
+  const hn::RebindToUnsigned<RayTag> du;
+  RayVec nearest[kMaxWidth];
+  for (std::size_t c = 0; c < kMaxWidth; ++c) nearest[c] = hn::Set(d, kInfinity);
+  for (std::size_t i = 0; i < members.count; i += kRayLanes) {
+    const std::size_t count = std::min(kRayLanes, members.count - i);
+    const RayRecord* rays[kRayLanes];
+    std::uint32_t wanted = 0;
+    for (std::size_t lane = 0; lane < count; ++lane) rays[lane] = &member<2 * kRayLanes>(members, i + lane);
+    for (std::size_t lane = count; lane < kRayLanes; ++lane) rays[lane] = rays[0];
+    for (std::size_t lane = 0; lane < count; ++lane)
+      wanted |= std::uint32_t{(rays[lane]->tag.flags & kRayDone) == 0} << lane;
+    const BoxLanes lanes(rays, widening);
+    const std::uint8_t wanted_bytes[8] = {static_cast<std::uint8_t>(wanted), static_cast<std::uint8_t>(wanted >> 8)};
+    const auto all = hn::LoadMaskBits(d, wanted_bytes);
+    auto masks = hn::Zero(du);
+    for (std::uint32_t left = children; left != 0; left &= left - 1) {
+      const auto c = static_cast<std::size_t>(std::countr_zero(left));
+      RayVec entry;
+      const auto met = hn::And(lanes.meet(node, c, entry), all);
+      nearest[c] = keep_min(hn::IfThenElse(met, entry, nearest[c]), nearest[c]);
+      masks = hn::Or(masks, hn::IfThenElseZero(hn::RebindMask(du, met), hn::Set(du, 1u << c)));
+    }
+    alignas(16) std::uint8_t bytes[kRayLanes];
+    hn::Store(hn::U8FromU32(masks), hn::Rebind<std::uint8_t, RayTag>(), bytes);
+    std::copy(bytes, bytes + count, hits.masks + i);
+    counts.box += static_cast<std::uint64_t>(std::popcount(children) * std::popcount(wanted));
+  }
+  for (std::uint32_t left = children; left != 0; left &= left - 1) {
+    const int c = std::countr_zero(left);
+    hits.nearest[c] = std::min(hits.nearest[c], hn::GetLane(hn::MinOfLanes(d, nearest[c])));
+  }
+}
+#endif
+
 // Slab: SlabRay, or DoubleSlabRay for accuracy.box: double. kMember: Accel::enters_member() of the key.
 template <class Slab, bool kMember>
 void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayMembers& members, const StripHits& hits,
@@ -61,6 +104,12 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
   const std::uint64_t boxes = static_cast<std::uint64_t>(std::popcount(lanes & held));
   const float widening = far_widening(accel.accuracy.box);
   const bool quantised = !accel.full_nodes.empty();
+#if HWY_TARGET != HWY_SCALAR
+  if constexpr (std::is_same_v<Slab, SlabRay> && !kMember)
+    if ((transform == nullptr || transform->identity) && node.plane_counts == 0 && accel.elements.empty() &&
+        !quantised && direct == 0 && hits.entries == nullptr && members.count >= kFewestInLanes)
+      return test_boxes_in_lanes(node, lanes & held, widening, members, hits, counts);
+#endif
   alignas(64) float nearest[kMaxWidth];
   std::copy(hits.nearest, hits.nearest + kMaxWidth, nearest);
   for (std::size_t i = 0; i < members.count; ++i) {

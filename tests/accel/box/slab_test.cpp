@@ -1,7 +1,9 @@
 #include "accel/box/slab.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -104,6 +106,53 @@ TEST(Slab, EmptyLanesAreNeverHitWhateverTheRay) {
     IntersectionCounts counts;
     test_strip(accel, {kNoInstance, NodeRef::inner(0)}, ~0u, {&record, nullptr, 1}, {&mask, nearest, nullptr}, counts);
     ASSERT_EQ(mask, 0) << i;
+  }
+}
+
+// Rays that fill registers together, whatever their bits, and some that are done.
+TEST(Slab, RaysTogetherMeetWhatEachMeetsAlone) {
+  Random random(50);
+  for (const SimdTarget target : usable_simd_targets()) {
+    const SimdGuard guard;
+    select_simd_target(target);
+    std::size_t met = 0;
+    for (std::size_t rays = 1; rays <= 40; ++rays) {
+      Accel accel;
+      Node& node = accel.nodes.emplace_back();
+      node.count = static_cast<std::uint8_t>(1 + random.below(8));
+      for (int lane = 0; lane < node.count; ++lane) {
+        const Vec3 a = random.in_box(Vec3{-1}, Vec3{1}), b = random.in_box(Vec3{-1}, Vec3{1});
+        for (int axis = 0; axis < 3; ++axis) {
+          node.plane[axis][lane] = std::min(a[axis], b[axis]);
+          node.plane[axis + 3][lane] = std::max(a[axis], b[axis]);
+        }
+      }
+      std::vector<RayRecord> records(rays);
+      for (std::size_t i = 0; i < rays; ++i) {
+        RayRecord& record = records[i];
+        record.ray.origin = random.in_box(Vec3{-2}, Vec3{2});
+        record.ray.direction = random.in_box(Vec3{-0.5f}, Vec3{0.5f}) - record.ray.origin;
+        const int axis = static_cast<int>(random.below(3));
+        if (i % 4 == 0) record.ray.origin[axis] = node.plane[axis][0];
+        if (i % 3 == 0) record.ray.direction[axis] = i % 2 == 0 ? 0.0f : random.any_bits();
+        if (i % 7 == 0) record.ray.tmin = random.any_bits();
+        record.hit.t = i % 5 == 0 ? random.any_bits() : kInfinity;
+        record.tag.flags = i % 6 == 0 ? kRayDone : 0;
+      }
+      const NodeKey key{kNoInstance, NodeRef::inner(0)};
+      float nearest[2][kMaxWidth];
+      for (float* const each : nearest) std::fill(each, each + kMaxWidth, kInfinity);
+      IntersectionCounts counts[2];
+      std::vector<std::uint8_t> together(rays), alone(rays);
+      test_strip(accel, key, 0x7f, {records.data(), nullptr, rays}, {together.data(), nearest[0], nullptr}, counts[0]);
+      for (std::size_t i = 0; i < rays; ++i)
+        test_strip(accel, key, 0x7f, {&records[i], nullptr, 1}, {&alone[i], nearest[1], nullptr}, counts[1]);
+      ASSERT_EQ(together, alone) << rays << " rays, target " << enum_name(target);
+      for (int lane = 0; lane < kMaxWidth; ++lane) ASSERT_EQ(nearest[0][lane], nearest[1][lane]) << lane;
+      ASSERT_EQ(counts[0].box, counts[1].box);
+      for (const std::uint8_t mask : alone) met += mask != 0;
+    }
+    EXPECT_GT(met, 100u);
   }
 }
 
