@@ -22,10 +22,11 @@ try {
   await writeFile(join(folder, 'a.yaml'), 'scene: {builtin: cornell}\nimage: {width: 8, height: 8, samples: 1, max_depth: 2}\n' +
     'engine: {kind: cycle, what_if: false}\nrays: {slots_per_resource: 64}\ntopology: {resources: 2}\n');
   await call('sweep', 'a.yaml', '--vary', 'topology.resources=1,2,8', '--vary', 'packets.rays=4,8', '--vary', 'packets.shapes=strip,single', '--out', 'sweep', '--quiet');
+  await call('sweep', 'a.yaml', '--vary', 'topology.resources=1,2', '--vary', 'image.seed=3,4', '--out', 'seeds', '--quiet');
   const sweep = JSON.parse(await readFile(join(folder, 'sweep/sweep.json'), 'utf8'));
   const cyclesOf = (resources, rays, shapes) => sweep.points.find(({keys}) => keys['topology.resources'] === resources &&
     keys['packets.rays'] === rays && keys['packets.shapes'] === shapes).results.cycles;
-  server = spawn(program, ['serve', 'sweep'], {cwd: folder, stdio: ['ignore', 'pipe', 'pipe']});
+  server = spawn(program, ['serve', 'sweep', 'seeds'], {cwd: folder, stdio: ['ignore', 'pipe', 'pipe']});
   const address = await new Promise((found, fail) => {
     let text = '';
     server.stdout.on('data', (data) => { text += data; const url = text.match(/http:\S+/); if (url) found(url[0]); });
@@ -77,6 +78,11 @@ try {
   await page.click('#between-points a');
   await page.waitForURL(/\/asked\/[0-9a-f]{32}\/$/);
   expect((await page.innerText('main')).includes('What limits it'), 'the page of the point opens');
+  // Of points with several seeds one is simulated, and the page says which.
+  await page.goto(`${address}1/`);
+  await page.click('#ask');
+  const answer = await (await page.waitForSelector('#between-points [role=status]:has(a)', {timeout: 60000})).innerText();
+  expect(answer.includes('of seed 3 alone'), `the page says of a simulated point: ${answer}`);
   for (const line of told) faults.push(`console: ${line}`);
   await browser.close();
   console.log(faults.length ? faults.join('\n') : 'the page answers');

@@ -141,7 +141,9 @@ function asker(keysOf, results, fill) {
       const link = document.createElement('a');
       link.href = state.page;
       link.textContent = 'the page of this point';
-      told.replaceChildren(link);
+      // A point is one simulation, and what lies between points is of means over the seeds.
+      const seed = keys[kSeed];
+      told.replaceChildren(link, ...(seed === undefined ? [] : [` (of seed ${seed} alone; between the points are means over all seeds)`]));
     } catch (error) {
       told.textContent = error.message;
     } finally {
