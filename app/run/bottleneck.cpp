@@ -2,7 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -18,16 +22,45 @@ namespace carousel::app {
 
 namespace {
 
-/// Some of the rays of a render job alone, or all of them; their picture is thrown away. The places of some are those
-/// of the run's seed, also where the machine's picture has another one.
+/// The places of a frame's pilots, drawn once for each size and draw so that their work is most like that of the frame.
+class PilotPlaces {
+ public:
+  /// Keeps references to its arguments.
+  PilotPlaces(const Prepared& prepared, const RenderJob& job) : prepared_(prepared), job_(job) {}
+
+  /// Null if that is the whole frame. Several threads may call.
+  const shading::PathSample* of(std::uint64_t paths, std::uint64_t draw) {
+    if (paths >= job_.first_rays()) return nullptr;
+    const std::lock_guard lock(mutex_);
+    const Config& config = prepared_.config();
+    const auto seed = static_cast<std::uint64_t>(config.image.seed);
+    if (job_.divisible() && work_.empty())
+      work_ = job_.survey(prepared_, config, job_.first_hits(), kOneIn, kLeastPaths, seed);
+    auto at = samples_.find({paths, draw});
+    if (at == samples_.end())
+      at = samples_.emplace(std::pair(paths, draw), job_.draw(paths, ringbus::slots_of(config), seed, work_, draw))
+               .first;
+    return &at->second;
+  }
+
+ private:
+  static constexpr std::uint64_t kOneIn = 16, kLeastPaths = 1 << 14;  // that the survey traces
+
+  const Prepared& prepared_;
+  const RenderJob& job_;
+  std::mutex mutex_;
+  RenderJob::PieceWork work_;
+  std::map<std::pair<std::uint64_t, std::uint64_t>, shading::PathSample> samples_;  // by number of paths, and draw
+};
+
+/// Some of the rays of a render job alone, or all of them; their picture is thrown away.
 class PilotWorkload final : public Workload {
  public:
+  /// `sample` must outlive the workload; null: all rays.
   PilotWorkload(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,
-                std::uint64_t paths)
+                const shading::PathSample* sample)
       : job_(prepared, config, first_hits) {
-    if (paths < job_.first_rays())
-      job_.set_sample(&sample_.emplace(job_.draw(paths, ringbus::slots_of(prepared.config()),
-                                                 static_cast<std::uint64_t>(prepared.config().image.seed))));
+    if (sample != nullptr) job_.set_sample(sample);
   }
   ShadeWork extra_work(const RayResult& result) const override { return job_.workload().extra_work(result); }
   std::uint32_t shader(const RayResult& result) const override { return job_.workload().shader(result); }
@@ -45,7 +78,6 @@ class PilotWorkload final : public Workload {
   }
 
  private:
-  std::optional<shading::PathSample> sample_;
   RenderJob job_;
 };
 
@@ -83,11 +115,13 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
     line->update(std::min(1.0, (static_cast<double>(at.done) + under_way) / static_cast<double>(at.of)), at.completed,
                  "rays", fmt::format("bottleneck, {}, {} of {} simulations done", at.stage, at.done, at.of));
   };
+  PilotPlaces places(prepared, job);
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       prepared.config(), prepared.accel, prepared.scene_size(),
-      [&](const Config& machine, std::uint64_t paths) {
+      [&](const Config& machine, std::uint64_t paths, std::uint64_t draw) {
         return std::make_unique<PilotWorkload>(
-            prepared, machine, machine.image.seed == prepared.config().image.seed ? job.first_hits() : nullptr, paths);
+            prepared, machine, machine.image.seed == prepared.config().image.seed ? job.first_hits() : nullptr,
+            places.of(paths, draw));
       },
       searched, options, show);
   noise = noise_of(found, run);

@@ -13,7 +13,7 @@
 namespace carousel::app {
 
 /// Other seeds of a picture with which a search finds the noise of a run's cycles.
-inline constexpr std::uint64_t kNoiseSeeds = 4;
+inline constexpr std::uint64_t kNoiseSeeds = 3;
 
 /// The bottleneck of the simulated machine, found by simulating a pilot drawn from all of the run's paths again with
 /// each class of parts relaxed in turn. `run` is the run of `job`; a raster pass is not done again with the same seed.

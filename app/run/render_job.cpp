@@ -81,9 +81,49 @@ shading::PathSample RenderJob::spread(std::uint64_t one_in, std::uint64_t seed) 
   return shading::PathSample(runs);
 }
 
-std::vector<accel::ReferenceRun> RenderJob::survey(const accel::Accel& accel) {
-  return accel::run_reference_by_piece(accel, workload(), pieces(),
-                                       [this](const RayTag& tag) { return piece_of(tag.path); });
+RenderJob::PieceWork RenderJob::survey(const Prepared& prepared, const Config& config,
+                                       const shading::FirstHits* first_hits, std::uint64_t one_in, std::uint64_t least,
+                                       std::uint64_t seed) const {
+  constexpr std::uint64_t kMostPaths = 1 << 16;
+  Config all = config;
+  all.sampling = {};
+  RenderJob frame(prepared, all, first_hits);
+  const std::uint64_t traced = std::clamp(frame_rays_ / one_in, least, kMostPaths);
+  const shading::PathSample some = spread(std::max<std::uint64_t>(1, frame_rays_ / traced), seed);
+  frame.set_sample(&some);
+  const std::vector<accel::ReferenceRun> runs = accel::run_reference_by_piece(
+      prepared.accel, frame.workload(), pieces(), [&frame](const RayTag& tag) { return frame.piece_of(tag.path); });
+  PieceWork work;
+  for (const accel::ReferenceRun& run : runs)
+    work.push_back({0, static_cast<double>(run.rays), static_cast<double>(run.tests.box),
+                    static_cast<double>(run.tests.triangle + run.tests.procedural)});
+  for (const shading::PathSample::Run& run : some.runs()) ++work[piece_at(run.first)][0];
+  return work;
+}
+
+template <class Draw>
+shading::PathSample RenderJob::most_like(const PieceWork& work, const Draw& draw, std::uint64_t first) const {
+  constexpr std::uint64_t kDraws = 500;
+  using Sum = std::array<double, 4>;
+  const auto add = [&work](Sum& to, std::uint64_t piece) {
+    for (std::size_t i = 0; i < to.size(); ++i) to[i] += work[piece][i];
+  };
+  Sum whole{};
+  for (std::uint64_t piece = 0; piece < work.size(); ++piece) add(whole, piece);
+  shading::PathSample best = draw(first * kDraws);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::uint64_t k = first * kDraws; k < (first + 1) * kDraws && !work.empty(); ++k) {
+    shading::PathSample sample = draw(k);
+    Sum own{};
+    for (const shading::PathSample::Run& run : sample.runs()) add(own, piece_at(run.first));
+    double off = 0;
+    for (std::size_t i = 1; i < own.size(); ++i)
+      if (own[0] > 0 && whole[i] > 0) off += std::pow(own[i] / own[0] * whole[0] / whole[i] - 1, 2);
+    if (off >= least) continue;
+    least = off;
+    best = std::move(sample);
+  }
+  return best;
 }
 
 /// Draws many samples by position, and keeps the one whose rays and tests a path, traced depth-first, are most nearly
@@ -92,53 +132,30 @@ std::vector<accel::ReferenceRun> RenderJob::survey(const accel::Accel& accel) {
 /// and tests is then no error of the sample. Rays and tests of the pieces are themselves estimated, from some of the
 /// paths.
 void RenderJob::draw_sample(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits) {
-  constexpr std::uint64_t kDraws = 500, kOneIn = 8, kLeastPaths = 1 << 14, kMostPaths = 1 << 16;
+  constexpr std::uint64_t kOneIn = 8, kLeastPaths = 1 << 14;
   const auto start = std::chrono::steady_clock::now();
   const auto seed = static_cast<std::uint64_t>(config.sampling.seed);
   const auto rays = std::max<std::uint64_t>(
       1, static_cast<std::uint64_t>(std::llround(config.sampling.fraction * static_cast<double>(frame_rays_))));
-
-  Config all = config;
-  all.sampling = {};
-  RenderJob frame(prepared, all, first_hits);
-  const std::uint64_t traced = std::clamp(frame_rays_ / kOneIn, kLeastPaths, kMostPaths);
-  const shading::PathSample some = spread(std::max<std::uint64_t>(1, frame_rays_ / traced), seed);
-  frame.set_sample(&some);
-  const std::vector<accel::ReferenceRun> work = frame.survey(prepared.accel);
-
-  using Work = std::array<double, 4>;  // paths, and what they should come to each
-  const auto add = [&work](Work& to, std::uint64_t piece, double paths) {
-    const Work more{paths, static_cast<double>(work[piece].rays), static_cast<double>(work[piece].tests.box),
-                    static_cast<double>(work[piece].tests.triangle + work[piece].tests.procedural)};
-    for (std::size_t i = 0; i < to.size(); ++i) to[i] += more[i];
-  };
-  std::vector<double> paths(work.size());
-  for (const shading::PathSample::Run& run : some.runs()) ++paths[piece_at(run.first)];
-  Work whole{};
-  for (std::uint64_t piece = 0; piece < work.size(); ++piece) add(whole, piece, paths[piece]);
-
-  double least = std::numeric_limits<double>::infinity();
-  for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
-    shading::PathSample sample =
-        list_ ? shading::draw_list(frame_rays_, rays, seed, draw)
-              : shading::draw_places(order_, rays, strata_of(config, rays), order_.samples(), seed, draw);
-    Work own{};
-    for (const shading::PathSample::Run& run : sample.runs()) add(own, piece_at(run.first), paths[piece_at(run.first)]);
-    double off = 0;
-    for (std::size_t i = 1; i < own.size(); ++i)
-      if (own[0] > 0 && whole[i] > 0) off += std::pow(own[i] / own[0] * whole[0] / whole[i] - 1, 2);
-    if (off >= least) continue;
-    least = off;
-    drawn_ = std::move(sample);
-  }
+  const PieceWork work = survey(prepared, config, first_hits, kOneIn, kLeastPaths, seed);
+  drawn_ = most_like(work, [&](std::uint64_t draw) {
+    return list_ ? shading::draw_list(frame_rays_, rays, seed, draw)
+                 : shading::draw_places(order_, rays, strata_of(config, rays), order_.samples(), seed, draw);
+  });
   set_sample(&*drawn_);
   draw_seconds_ = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together,
-                                    std::optional<std::uint64_t> seed) const {
+shading::PathSample RenderJob::draw(std::uint64_t paths, std::uint64_t together, std::optional<std::uint64_t> seed,
+                                    const PieceWork& work, std::uint64_t draw) const {
   const std::uint64_t by = seed.value_or(seed_);
-  return tracer_ ? shading::draw_tiles(order_, paths, together, by) : shading::draw_list(frame_rays_, paths, by);
+  return most_like(
+      work,
+      [&](std::uint64_t k) {
+        return tracer_ ? shading::draw_tiles(order_, paths, together, by, k)
+                       : shading::draw_list(frame_rays_, paths, by, k);
+      },
+      draw);
 }
 
 void RenderJob::set_sample(const shading::PathSample* sample) {

@@ -29,10 +29,17 @@ class RenderJob {
   /// pass, and must outlive the job.
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
+  /// What some paths of each piece of the frame come to, traced depth-first: paths, rays, box tests and other tests.
+  using PieceWork = std::vector<std::array<double, 4>>;
+  /// Traces one path in `one_in` of the frame of this configuration, but `least` or more.
+  PieceWork survey(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,
+                   std::uint64_t one_in, std::uint64_t least, std::uint64_t seed) const;
   /// Draws about `paths` of the first rays, over all of them, for a pilot: tiles of the picture, places of at least
-  /// `together` paths if they are many, or runs of the list. `seed`: if not that of the picture.
+  /// `together` paths if they are many, or runs of the list. Of many draws it is the one whose work is most like that
+  /// of the frame; others with another `draw`. Without `work`: the first. `seed`: if not that of the picture.
   shading::PathSample draw(std::uint64_t paths, std::uint64_t together,
-                           std::optional<std::uint64_t> seed = std::nullopt) const;
+                           std::optional<std::uint64_t> seed = std::nullopt, const PieceWork& work = {},
+                           std::uint64_t draw = 0) const;
   /// Only these of the first rays are traced; `sample` must outlive the job. Before the first ray.
   void set_sample(const shading::PathSample* sample);
   /// The paths that `sampling` draws; null if the whole frame is traced.
@@ -84,12 +91,13 @@ class RenderJob {
   void write_images(const std::filesystem::path& folder, std::optional<std::int64_t> frame = std::nullopt) const;
 
  private:
+  /// Of many samples the one whose rays and tests a path are most nearly those of the frame.
+  template <class Draw>
+  shading::PathSample most_like(const PieceWork& work, const Draw& draw, std::uint64_t first = 0) const;
   void draw_sample(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits);
   static std::uint64_t strata_of(const Config& config, std::uint64_t rays);
   /// One path in `one_in`, evenly over the frame.
   shading::PathSample spread(std::uint64_t one_in, std::uint64_t seed) const;
-  /// The tests and nodes of the paths of each piece, traced depth-first.
-  std::vector<accel::ReferenceRun> survey(const accel::Accel& accel);
 
   std::optional<double> raster_seconds_, draw_seconds_;
   shading::FirstHits first_hits_;                // result of the raster pass, which the tracer reads

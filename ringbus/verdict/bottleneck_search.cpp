@@ -8,8 +8,6 @@
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "core/numeric/worth_naming.h"
 #include "ringbus/verdict/cold_caches.h"
 #include "ringbus/verdict/foretell.h"
@@ -42,35 +40,26 @@ class Search {
     const std::vector<std::vector<std::size_t>> groups = search_groups(what_ifs_, *run_.result.cycle);
     out_.paths = pilot_paths(config_, run_.paths, frame(),
                              share(kScreening, groups.size() + 1 + static_cast<std::size_t>(noise_seeds_)));
-    begin("first pilot", groups.size());
+    pilots_.begin("first pilot", groups.size() + 1, out_.paths);
     screen(groups);
     const bool whole = out_.whole;
     if (!whole && out_.complete) find_noise();
     note_phases();
-    for (int larger = 0; out_.complete && !out_.whole && !(told() || larger == kLargerPilots); ++larger) {
-      const bool of_memory = cold_ && !out_.unlike.empty();
-      std::vector<std::size_t> worth =
-          worth_a_second_look(out_.gains, of_memory || likeness_.other_cycles ? kFewest : kContenders, of_memory);
-      const std::uint64_t paths = next_paths(worth, kLargerPilots - larger);
-      if (paths == 0) break;
-      out_.paths = paths;
-      begin(larger == 0 ? "second pilot" : "larger pilot", worth.size());
-      simulate_base();
-      if (!out_.complete) break;
-      relax_contenders(worth);
-    }
+    if (out_.complete && !out_.whole && !told()) look_again();
     if (out_.complete) judge();
     if (whole && out_.complete) replicate();
-    if (!out_.complete || !out_.unlike.empty()) return without_gains();
+    if (!out_.complete || !out_.unlike.empty()) {
+      out_.gains.clear();
+      out_.phases.clear();
+    }
     std::stable_sort(out_.gains.begin(), out_.gains.end(), [](auto& a, auto& b) { return a.gain > b.gain; });
     return out_;
   }
 
  private:
-  static constexpr int kLargerPilots = 2;
   static constexpr double kScreening = 0.4;  // of the run's rays, that the first pilot is to take
   static constexpr double kWanted = 0.9;     // that all pilots are to take
-  static constexpr double kAtMost = 2.5;     // that they may take to tell the greatest gain from noise
+  static constexpr double kAtMost = 1.6;     // that they may take to tell the greatest gain from noise
 
   std::uint64_t frame() const { return run_.result.rays_completed; }
 
@@ -89,14 +78,6 @@ class Search {
   double left_of(double part) const {
     return part - static_cast<double>(out_.simulated) / static_cast<double>(frame());
   }
-
-  Bottleneck without_gains() {
-    out_.gains.clear();
-    out_.phases.clear();
-    return out_;
-  }
-
-  void begin(const char* stage, std::size_t relaxed) { pilots_.begin(stage, relaxed + 1, out_.paths); }
 
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
     std::vector<RunResult> results = pilots_.simulate(machines);
@@ -117,36 +98,54 @@ class Search {
   void set_base(RunResult base) {
     base_ = std::move(base);
     out_.rays = base_.rays_completed;
-    if (out_.complete && !stops_) likeness_ = likeness(foretelling(), *run_.result.cycle);
+    if (out_.complete && !stops_) likeness_ = likeness(foretelling(base_), *run_.result.cycle);
   }
 
+  /// Simulates the machine as configured. Draws the pilot again while it is not like the run, as long as that takes
+  /// little, and goes on with the one that is most like it.
   void simulate_base() {
-    if (!base_is_the_run()) set_base(std::move(simulate({&config_}).front()));
+    if (base_is_the_run()) return;
+    constexpr std::uint64_t kDraws = 4;
+    constexpr double kLike = 0.05, kLittle = 0.3;
+    std::uint64_t taken = 0;
+    for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+      pilots_.take(draw);
+      RunResult drawn = simulate({&config_}).front();
+      if (!out_.complete) return;
+      const double off = stops_ ? 0 : likeness(foretelling(drawn), *run_.result.cycle).off();
+      if (draw == 0 || off < likeness_.off()) {
+        taken = draw;
+        set_base(std::move(drawn));
+      }
+      if (likeness_.off() <= kLike || part_of_run(out_.paths, draw + 2) > kLittle) break;
+      pilots_.expect_more(1);
+    }
+    pilots_.take(taken);
   }
 
-  Foretelling foretelling() const {
-    return {{&*base_.cycle, base_.rays_completed},
+  /// `more_slots`: for a machine with twice the ray slots, which is full later.
+  Foretelling foretelling(const RunResult& base, bool more_slots = false) const {
+    return {{&*base.cycle, base.rays_completed},
             frame(),
-            2 * fill_rays(slots_of(config_)),
+            (more_slots ? 2 : 1) * fill_rays(slots_of(config_)),
             stops_ ? nullptr : &*run_.result.cycle};
   }
 
   /// Simulates the pilot as configured and with the classes of each group relaxed together; then parts of the groups
   /// for which that may gain enough, down to single classes.
   void screen(std::vector<std::vector<std::size_t>> groups) {
-    bool have_base = base_is_the_run();
-    while (!groups.empty()) {
+    simulate_base();
+    while (out_.complete && !groups.empty()) {
       std::vector<std::vector<std::size_t>> tried, parts;
       std::deque<Config> together;
       std::vector<const Config*> machines;
-      if (!have_base) machines.push_back(&config_);
       for (std::vector<std::size_t>& group : groups) {
         std::vector<const WhatIf*> members;
         for (const std::size_t i : group) members.push_back(&what_ifs_[i]);
         std::optional<Config> machine =
             group.size() == 1 ? members.front()->relaxed : relaxed_together(config_, members);
         if (!machine) {
-          halve(group, parts);
+          divide(group, parts);
           continue;
         }
         machines.push_back(&together.emplace_back(std::move(*machine)));
@@ -154,17 +153,9 @@ class Search {
       }
       std::vector<RunResult> results = simulate(machines);
       if (!out_.complete) return;
-      if (!have_base) {
-        set_base(std::move(results.front()));
-        results.erase(results.begin());
-        have_base = true;
-      }
       std::vector<std::pair<std::vector<std::size_t>, Estimate>> several;
       for (std::size_t k = 0; k < tried.size(); ++k) {
-        const bool warms =
-            std::any_of(tried[k].begin(), tried[k].end(), [&](auto i) { return what_ifs_[i].part.how.keeps_shapes; });
-        const Estimate gain =
-            foretelling().gain({&*results[k].cycle, results[k].rays_completed}, likeness_.off(), warms);
+        const Estimate gain = gain_of(tried[k], results[k]);
         if (tried[k].size() > 1) {
           several.emplace_back(std::move(tried[k]), gain);
           continue;
@@ -179,7 +170,7 @@ class Search {
         if (gain.value < kEnough || gain.high < enough || (likeness_.other_cycles && gain.low <= 0))
           for (const std::size_t i : group) note(i, gain, group.size());
         else
-          halve(group, parts);
+          divide(group, parts);
       }
       groups = std::move(parts);
     }
@@ -202,11 +193,10 @@ class Search {
     }
   }
 
-  void halve(const std::vector<std::size_t>& group, std::vector<std::vector<std::size_t>>& parts) {
-    const auto half = group.begin() + static_cast<std::ptrdiff_t>(group.size() / 2);
-    parts.emplace_back(group.begin(), half);
-    parts.emplace_back(half, group.end());
-    pilots_.expect_more(2);
+  void divide(const std::vector<std::size_t>& group, std::vector<std::vector<std::size_t>>& parts) {
+    const std::vector<std::vector<std::size_t>> own = parts_of(group);
+    parts.insert(parts.end(), own.begin(), own.end());
+    pilots_.expect_more(own.size());
   }
 
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
@@ -227,15 +217,33 @@ class Search {
     estimate(which);
   }
 
+  /// The gain of the machine with these classes relaxed, by the present pilot with what this is known to be off by.
+  Estimate gain_of(const std::vector<std::size_t>& classes, const RunResult& relaxed) const {
+    const auto any = [&](const auto& is) { return std::any_of(classes.begin(), classes.end(), is); };
+    const bool slots = any([&](std::size_t i) { return what_ifs_[i].name() == "ray_slots"; }),
+               warms = any([&](std::size_t i) { return what_ifs_[i].part.how.keeps_shapes; });
+    return foretelling(base_, slots).gain({&*relaxed.cycle, relaxed.rays_completed}, likeness_.off(), warms);
+  }
+
   /// Notes the gains of classes that were relaxed with the present pilot, with what this is known to be off by.
   void estimate(const std::vector<std::size_t>& classes) {
     for (const std::size_t i : classes) {
       const RunResult& result = relaxed_[i].result;
-      note(i,
-           foretelling().gain({&*result.cycle, result.rays_completed}, likeness_.off(),
-                              what_ifs_[i].part.how.keeps_shapes),
-           1);
+      note(i, gain_of({i}, result), 1);
     }
+  }
+
+  /// Simulates a larger pilot if it may tell more.
+  void look_again() {
+    const bool of_memory = cold_ && !out_.unlike.empty();
+    std::vector<std::size_t> worth =
+        worth_a_second_look(out_.gains, of_memory || likeness_.other_cycles ? kFewest : kContenders, of_memory);
+    const std::uint64_t paths = next_paths(worth);
+    if (paths == 0) return;
+    out_.paths = paths;
+    pilots_.begin("second pilot", worth.size() + 1, out_.paths);
+    simulate_base();
+    if (out_.complete) relax_contenders(worth);
   }
 
   /// Relaxes those of these classes that may be the best: of many, the two that promise most, and then those that may
@@ -267,11 +275,11 @@ class Search {
   /// class stands out in spite of the difference.
   bool told() { return judge() && sure(out_.gains); }
 
-  /// Paths of the next pilot, which is to relax these classes, of so many that may follow; 0 if what it takes is not
-  /// worth it. If the present one is not like the run, another follows, whatever that takes.
-  std::uint64_t next_paths(std::vector<std::size_t>& worth, int left) const {
+  /// Paths of a second pilot, which is to relax these classes; 0 if what it takes is not worth it. If the first one is
+  /// not like the run, another follows, whatever that takes.
+  std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
     const std::uint64_t twice = std::min(run_.paths, 2 * out_.paths);
-    if (!out_.unlike.empty()) return paths_after_unlike(out_.paths, run_.paths, worth.size(), left, cold_);
+    if (!out_.unlike.empty()) return paths_after_unlike(out_.paths, run_.paths, worth.size(), cold_);
     if (worth.empty()) return 0;
     const std::uint64_t wanted = pilot_paths(config_, run_.paths, frame(), share(left_of(kWanted), worth.size() + 1));
     if (left_of(kWanted) > 0 && wanted >= out_.paths + out_.paths / 2) return wanted;
@@ -350,8 +358,8 @@ class Search {
   /// are alike, or if a class is worth naming in spite of the difference, which widens its interval, unless the cycles
   /// differ by much.
   bool judge() {
-    constexpr double kMuch = 0.15;
-    const Estimate cycles = foretelling().cycles();
+    constexpr double kMuch = 0.25;
+    const Estimate cycles = foretelling(base_).cycles();
     out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
     const double ran = stops_ ? cycles.value : static_cast<double>(run_.result.cycle->cycles);
     out_.rays_per_kilocycle = rays_per_kilocycle(frame(), ran);

@@ -52,14 +52,15 @@ struct Bottleneck {
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
 /// frame (foretell.h). A resource that stops is left out of account.
 ///
-/// The classes of parts that the run kept busy for less than half of its time are relaxed together, and so are those
-/// that others wait for (search_choices.h); only where that may gain more than what is known already they are told
-/// apart, by halves, unless the pilot is not like the run and may not tell their gain from nothing. This and each other
-/// class by itself is simulated for a first, small pilot. If it is sure then which class to name, the search ends. Else
-/// those that may be worth naming, at most six, are simulated for a larger one, the most promising first, as far as the
-/// pilots have then together about as many rays as the run. A pilot that is not like the run is doubled, twice at most,
-/// whatever that takes, unless a class is worth naming in spite of the difference, which widens the intervals; where it
-/// is not, nothing is found out. The whole frame comes instead where it takes no more, or its caches are cold
+/// Of some draws of a pilot that one is taken by which the machine as configured is most like the run. The classes of
+/// parts that the run kept busy for less than half of its time are relaxed together, and so are those that others wait
+/// for (search_choices.h); only where that may gain more than what is known already they are told apart, by halves or,
+/// of a few, one by one, unless the pilot is not like the run and may not tell their gain from nothing. This and each
+/// other class by itself is simulated for a first, small pilot. If it is sure then which class to name, the search
+/// ends. Else those that may be worth naming, at most six, are simulated for a larger one, the most promising first, as
+/// far as the pilots have then together about as many rays as the run. A pilot that is not like the run is doubled,
+/// once, whatever that takes, unless a class is worth naming in spite of the difference, which widens the intervals;
+/// where it is not, nothing is found out. The whole frame comes instead where it takes no more, or its caches are cold
 /// (search_choices.h).
 ///
 /// Of a whole frame the classes that may be named are simulated with two other seeds of the picture besides, and their

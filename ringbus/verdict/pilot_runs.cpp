@@ -16,11 +16,11 @@ std::uint64_t slots_of(const Config& config) {
 }
 
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
-  // Twice the rays that fill a machine with twice the slots: half of the pilot is then between fill and drain.
-  constexpr std::uint64_t kFills = 2, kLeastRays = 1500, kMostFills = 32, kMostRays = 80'000;
+  // Three times the rays that fill the machine: half of the pilot is then between fill and drain.
+  constexpr std::uint64_t kFills = 3, kLeastRays = 1000, kMostFills = 64, kMostRays = 80'000;
   // A pilot that is a good part of a small frame spares little, and the frame leaves no question.
-  constexpr std::uint64_t kSmallFills = 3, kSmallRays = 3000;
-  const std::uint64_t fill = 2 * fill_rays(slots_of(config));
+  constexpr std::uint64_t kSmallFills = 6, kSmallRays = 3000;
+  const std::uint64_t fill = fill_rays(slots_of(config));
   const double rays_each =
       static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
   const auto at_least = [&](std::uint64_t least) {
@@ -44,7 +44,7 @@ void PilotRuns::begin(const char* stage, std::size_t machines, std::uint64_t pat
 }
 
 RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
-  const std::unique_ptr<Workload> pilot = make_pilot_(machine, paths_);
+  const std::unique_ptr<Workload> pilot = make_pilot_(machine, paths_, draw_);
   RunOptions options = options_;
   options.threads = threads;
   // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.

@@ -34,8 +34,8 @@ std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64
 Config with_other_seed(const Config& machine, std::uint64_t k);
 
 /// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
-/// machine.
-using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths)>;
+/// machine, and others for another `draw`.
+using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths, std::uint64_t draw)>;
 
 /// How far a search has come.
 struct SearchProgress {
@@ -62,6 +62,8 @@ class PilotRuns {
 
   /// A pilot of so many paths, which this number of machines will get.
   void begin(const char* stage, std::size_t machines, std::uint64_t paths);
+  /// Pilots are of this draw from now on.
+  void take(std::uint64_t draw) { draw_ = draw; }
   void expect_more(std::size_t machines) { state_.of += machines; }
   void leave_out_one() { ++state_.done; }
 
@@ -84,7 +86,7 @@ class PilotRuns {
   const SearchedRun& run_;
   const RunOptions& options_;
   const SearchObserver& observe_;
-  std::uint64_t paths_ = 0;
+  std::uint64_t paths_ = 0, draw_ = 0;
   std::mutex mutex_;  // guards the members below, and the observer
   SearchProgress state_;
   bool complete_ = true;

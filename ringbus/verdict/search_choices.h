@@ -55,6 +55,18 @@ inline std::vector<std::vector<std::size_t>> search_groups(const std::vector<Wha
   return out;
 }
 
+/// The parts of a group that may gain enough: halves, or single classes of a few, of which halves would spare nothing
+/// where two gain.
+inline std::vector<std::vector<std::size_t>> parts_of(const std::vector<std::size_t>& group) {
+  constexpr std::size_t kFew = 4;
+  const std::size_t each = group.size() <= kFew ? 1 : (group.size() + 1) / 2;
+  std::vector<std::vector<std::size_t>> out;
+  for (std::size_t at = 0; at < group.size(); at += each)
+    out.emplace_back(group.begin() + static_cast<std::ptrdiff_t>(at),
+                     group.begin() + static_cast<std::ptrdiff_t>(std::min(at + each, group.size())));
+  return out;
+}
+
 inline void greatest_first(const std::vector<Gain>& gains, std::vector<std::size_t>& classes) {
   std::stable_sort(classes.begin(), classes.end(),
                    [&](std::size_t a, std::size_t b) { return gains[a].gain > gains[b].gain; });
@@ -105,11 +117,10 @@ inline bool cold(const cycle::CycleResult& run, std::uint64_t slots) {
   return !idle(run, "memory_bandwidth") && reads_between(run, slots).first_share() >= kColdShare;
 }
 
-/// Paths of the pilot that follows one that is not like the run, of `left` that may: twice as many, or the whole frame
-/// if it is cold or takes no more than doubling the pilot so often. The frame's run as configured is known.
-inline std::uint64_t paths_after_unlike(std::uint64_t pilot, std::uint64_t frame, std::size_t classes, int left,
-                                        bool cold) {
-  const std::uint64_t doubled = ((std::uint64_t{2} << left) - 2) * pilot * (classes + 1);
+/// Paths of the pilot that follows one that is not like the run: twice as many, or the whole frame if it is cold or
+/// takes no more than that. The frame's run as configured is known.
+inline std::uint64_t paths_after_unlike(std::uint64_t pilot, std::uint64_t frame, std::size_t classes, bool cold) {
+  const std::uint64_t doubled = 2 * pilot * (classes + 1);
   return classes > 0 && (cold || doubled >= classes * frame) ? frame : std::min(frame, 2 * pilot);
 }
 

@@ -1,5 +1,9 @@
 // When a pilot is like enough to the run, tried as a user would: machines drawn by `script/verdicts`, whose pilots
 // differ.
+#include <cmath>
+#include <string>
+#include <vector>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -60,19 +64,34 @@ constexpr const char* kOtherCycles =
     "64}\n"
     "shading: {workers: 16, cycles_per_shade: 4}\n";
 
-constexpr const char* kNearCycles =
+constexpr const char* kTerrainBelow =
     "engine: {kind: cycle, threads: 1}\n"
-    "image: {width: 48, height: 32, samples: 2, max_depth: 5}\n"
-    "scene: {builtin: cornell}\n"
-    "topology: {resources: 8, shape: independent, visit: all, link: {latency_cycles: 4, bytes_per_cycle: 64, depth: "
-    "16}}\n"
-    "packets: {ids_per_cycle: 8}\n"
+    "image: {width: 80, height: 56, samples: 2, max_depth: 3}\n"
+    "scene: {builtin: terrain, triangles: 4000}\n"
+    "topology: {resources: 4, shape: bidirectional, visit: all, link: {latency_cycles: 16, bytes_per_cycle: 4, depth: "
+    "8}}\n"
+    "packets: {ids_per_cycle: 2}\n"
     "collections: {traversal: spread}\n"
     "rays: {slots_per_resource: 64}\n"
-    "testers: {box: {units: 4}, triangle: {units: 4, interval_cycles: 4}, contexts: 4}\n"
-    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 400, dram_bytes_per_cycle: 4, l2_kib: 64, shape_buffer_kib: "
-    "4}\n"
-    "shading: {workers: 4, cycles_per_shade: 20}\n";
+    "testers: {box: {units: 1}, triangle: {units: 4, interval_cycles: 16}, contexts: 1}\n"
+    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 400, dram_bytes_per_cycle: 32, l2_kib: 64, "
+    "shape_buffer_kib: 16}\n"
+    "shading: {workers: 16, cycles_per_shade: 4}\n";
+
+constexpr const char* kSlowMemory =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 80, height: 56, samples: 2, max_depth: 3}\n"
+    "scene: {builtin: terrain, triangles: 40000}\n"
+    "topology: {resources: 4, shape: point_to_point, visit: owners, link: {latency_cycles: 1, bytes_per_cycle: 16, "
+    "depth: 8}}\n"
+    "packets: {ids_per_cycle: 8}\n"
+    "collections: {traversal: treelet}\n"
+    "bvh: {treelet_triangles: 64}\n"
+    "rays: {slots_per_resource: 16}\n"
+    "testers: {box: {units: 16}, triangle: {units: 1, interval_cycles: 1}, contexts: 2}\n"
+    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 400, dram_bytes_per_cycle: 4, l2_kib: 512, "
+    "shape_buffer_kib: 64}\n"
+    "shading: {workers: 4, cycles_per_shade: 4}\n";
 
 // The pilot's workers are busy for 74 % of the time, and the run's for 89 %. Without these 15 points the interval of
 // contexts would be above zero; with a veto a larger pilot would name shading.
@@ -94,21 +113,42 @@ TEST_F(VerdictPilots, APartThatDoesNotMatterVetoesNothing) {
   EXPECT_LT(bottleneck["rays"], 0.5 * report["rays"]["completed"].get<double>()) << bottleneck.dump(1);
 }
 
-// The run takes 17 % longer than the first pilot foretells. Links would be named by that pilot, too, but for another
-// gain.
-TEST_F(VerdictPilots, OtherCyclesAreSearchedAgainThoughThatIsDear) {
+// By the first draw the run would take 17 % longer than foretold. By another it is a small part of the frame that
+// tells.
+TEST_F(VerdictPilots, APilotThatIsNotLikeTheRunIsDrawnAgain) {
   const Json report = searched(kOtherCycles), bottleneck = report["bottleneck"];
   EXPECT_EQ(bottleneck["unlike"], "");
   EXPECT_EQ(bottleneck["limits"], "link_bandwidth") << bottleneck.dump(1);
-  EXPECT_EQ(bottleneck["rays"], report["rays"]["completed"]);
+  EXPECT_LT(std::abs(bottleneck["deviation"].get<double>()), 0.1);
+  EXPECT_LT(bottleneck["rays"], 0.2 * report["rays"]["completed"].get<double>());
 }
 
-// The run takes 9 % longer than the pilot foretells, three points more than its uncertainty. Shading stands out.
+// Sky above and ground below: a draw by position alone has some percent more rays a path than the frame, and its
+// cycles are a sixth off, by which nothing was found out before. The foretold gain is that of the frame.
+TEST_F(VerdictPilots, PlacesAreDrawnWhoseWorkIsThatOfTheFrame) {
+  const Json report = searched(kTerrainBelow), bottleneck = report["bottleneck"];
+  EXPECT_EQ(bottleneck["unlike"], "");
+  ASSERT_EQ(bottleneck["limits"], "contexts") << bottleneck.dump(1);
+  const double rays = report["rays"]["completed"].get<double>();
+  EXPECT_LT(bottleneck["rays"], 0.2 * rays);
+  const Json& named = bottleneck["gains"][0];
+  std::vector<std::string> words{"run", "a.yaml", "--quiet", "--force", "--out", "twice"};
+  for (const Json& set : named["sets"]) words.insert(words.end(), {"--set", set.get<std::string>()});
+  ASSERT_EQ(program_.run(words).status, 0);
+  const Json twice = Json::parse(program_.read("twice/report.json"));
+  const double real = report["engine"]["cycles"].get<double>() / twice["engine"]["cycles"].get<double>() - 1;
+  EXPECT_GE(real, named["low"].get<double>());
+  EXPECT_LE(real, named["high"].get<double>());
+}
+
+// The run takes 10 % longer than the pilot foretells, more than its uncertainty. Contexts stand out, and nothing larger
+// is simulated.
 TEST_F(VerdictPilots, AClassThatStandsOutIsNamedInSpiteOfSlightlyOtherCycles) {
-  const Json report = searched(kNearCycles), bottleneck = report["bottleneck"];
-  EXPECT_EQ(bottleneck["limits"], "shading") << bottleneck.dump(1);
-  EXPECT_GT(bottleneck["deviation"], bottleneck["noise"]);
-  EXPECT_LT(bottleneck["rays"], 0.5 * report["rays"]["completed"].get<double>());
+  const Json report = searched(kSlowMemory), bottleneck = report["bottleneck"];
+  EXPECT_EQ(bottleneck["unlike"], "");
+  EXPECT_EQ(bottleneck["limits"], "contexts") << bottleneck.dump(1);
+  EXPECT_GT(bottleneck["deviation"], bottleneck["noise"].get<double>() + 0.02);
+  EXPECT_LT(bottleneck["rays"], 0.06 * report["rays"]["completed"].get<double>());
 }
 
 }  // namespace

@@ -282,7 +282,7 @@ TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   config.shading.cycles_per_shade = 400;
   const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());
   const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
-  const auto frame = [&](const Config& machine, std::uint64_t) {
+  const auto frame = [&](const Config& machine, std::uint64_t, std::uint64_t = 0) {
     auto tracer = std::make_unique<shading::PathTracer>(scene, machine, 60, 1);
     tracer->set_first_hits(&raster);
     return tracer;

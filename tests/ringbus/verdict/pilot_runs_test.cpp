@@ -45,7 +45,7 @@ struct PilotCase {
 
 TEST(PilotRuns, AreTheSameOnThreads) {
   PilotCase pilot;
-  const PilotFactory pilots = [&](const Config&, std::uint64_t) { return pilot.scene.new_workload(); };
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
   const std::vector<RunResult> alone = pilot.simulate(1, pilots, {});
   SearchProgress last;  // no lock: the observer is called by one thread at a time
   const std::vector<RunResult> together = pilot.simulate(3, pilots, [&](const SearchProgress& at) { last = at; });
@@ -67,7 +67,7 @@ TEST(PilotRuns, OfAWarmFrameAreAsWarm) {
   ScatterWorkload workload = pilot.scene.workload();
   const RunResult second = run_cycle(pilot.machines[0], accel, pilot.scene.size(), workload, options);
   ASSERT_LT(second.cycle->cycles, pilot.run.cycle->cycles) << "the caches do not matter";
-  const PilotFactory pilots = [&](const Config&, std::uint64_t) { return pilot.scene.new_workload(); };
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
   const SearchedRun searched{second, kPilotRays, &pilot.run.cycle->cached_lines};
   const RunOptions plain = on_threads(1);
   const SearchObserver nobody;
@@ -79,7 +79,7 @@ TEST(PilotRuns, OfAWarmFrameAreAsWarm) {
 TEST(PilotRuns, HandOnAnError) {
   PilotCase pilot;
   std::atomic<int> begun{0};
-  const PilotFactory pilots = [&](const Config&, std::uint64_t) {
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) {
     if (++begun == 2) throw std::runtime_error("no such pilot");
     return pilot.scene.new_workload();
   };
