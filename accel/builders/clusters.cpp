@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <unordered_map>
 #include <unordered_set>
 #include <utility>
 
@@ -82,11 +83,15 @@ class MeshUpdate {
       renew(clusters_.clusters[c].root, leaves, primitives);
     }
     if (work_.moved.empty() || clusters_.above.empty()) return;
-    work_.deals_above = clusters_.clusters.size() <= most_dealt;
-    if (work_.deals_above)
-      deal_above();
-    else
-      refit_above(clusters_.root);
+    above_.insert(clusters_.above.begin(), clusters_.above.end());
+    if (clusters_.clusters.size() <= most_dealt) {
+      for (std::uint32_t c = 0; c < clusters_.clusters.size(); ++c)
+        numbers_.emplace(clusters_.clusters[c].root.bits(), c);
+      moved_.assign(clusters_.clusters.size(), false);
+      for (const std::uint32_t c : work_.moved) moved_[c] = true;
+      deal_where_many_moved(clusters_.root);
+    }
+    refit_above(clusters_.root);
   }
 
  private:
@@ -164,21 +169,47 @@ class MeshUpdate {
     return box;
   }
 
-  void deal_above() {
-    above_.insert(clusters_.above.begin(), clusters_.above.end());
+  /// Deals out what hangs below the highest nodes of which many clusters have moved.
+  void deal_where_many_moved(NodeRef ref) {
+    if (!is_above(ref)) return;
+    std::vector<std::uint32_t> below;
+    add_below(ref, below);
+    const auto moved = static_cast<std::size_t>(
+        std::count_if(below.begin(), below.end(), [&](std::uint32_t cluster) { return moved_[cluster]; }));
+    if (moved == 0) return;
+    constexpr std::size_t kOneIn = 4;
+    if (kOneIn * moved >= below.size()) return deal_below(ref, std::move(below));
+    const Node& node = accel_.nodes[ref.node()];
+    for (int lane = 0; lane < node.count; ++lane) deal_where_many_moved(node.child[lane]);
+  }
+
+  /// The numbers of the clusters below, depth first.
+  void add_below(NodeRef ref, std::vector<std::uint32_t>& below) const {
+    if (!is_above(ref)) return below.push_back(numbers_.at(ref.bits()));
+    const Node& node = accel_.nodes[ref.node()];
+    for (int lane = 0; lane < node.count; ++lane) add_below(node.child[lane], below);
+  }
+
+  void deal_below(NodeRef root, std::vector<std::uint32_t> below) {
     std::vector<DealtNode> tree;
     std::vector<DealtItem> items;
     places_.clear();
-    add_above(clusters_.root, tree, items);
+    add_above(root, tree, items);
+    DealtClusters& dealt = work_.dealt.emplace_back();
+    dealt.root = root;
+    dealt.clusters = std::move(below);
     const double refitted = dealt_area(tree, items, 1);
-    work_.boxes_above = deal(tree, items) + 2 * items.size();
-    work_.better_above = dealt_area(tree, items, 1) < refitted;
-    if (work_.better_above) {
+    dealt.boxes = deal(tree, items) + 2 * items.size();
+    dealt.is_better = dealt_area(tree, items, 1) < refitted;
+    std::vector<bool> stays;  // by place: it has the cluster that it had, which has not moved
+    for (std::uint32_t i = 0; i < items.size(); ++i)
+      stays.push_back((!dealt.is_better || items[i].id == i) && !moved_[dealt.clusters[i]]);
+    if (dealt.is_better) {
       const std::vector<NodeRef> hung = std::exchange(places_, {});
       for (const DealtItem& item : items) places_.push_back(hung[item.id]);
     }
     next_place_ = 0;
-    place_above(clusters_.root);
+    place_above(root, stays, dealt);
   }
 
   std::uint32_t add_above(NodeRef ref, std::vector<DealtNode>& tree, std::vector<DealtItem>& items) {
@@ -199,32 +230,34 @@ class MeshUpdate {
     return at;
   }
 
-  /// Hangs the clusters below the nodes above, in the order of places_.
-  Aabb place_above(NodeRef ref) {
+  /// Hangs the clusters below the nodes above, in the order of places_. Returns whether all that is below stays.
+  bool place_above(NodeRef ref, const std::vector<bool>& stays, DealtClusters& dealt) {
     Node& node = accel_.nodes[ref.node()];
-    Aabb whole;
+    const std::size_t number = dealt.nodes.size();
+    dealt.nodes.push_back(ref.node());
+    dealt.hangs_anew.push_back(false);
+    dealt.changes.push_back(false);
+    bool all_stay = true;
     std::uint64_t primitives = 0;
     for (int lane = 0; lane < node.count; ++lane) {
-      Aabb box;
       if (is_above(node.child[lane])) {
-        box = place_above(node.child[lane]);
+        all_stay &= place_above(node.child[lane], stays, dealt);
       } else {
+        all_stay &= stays[next_place_];
         const NodeRef cluster = places_[next_place_++];
+        if (node.child[lane] != cluster) dealt.hangs_anew[number] = true;
         node.child[lane] = cluster;
         node.strip_size[lane] =
             cluster.is_inner() ? accel_.nodes[cluster.node()].count : static_cast<std::uint8_t>(cluster.triangles());
-        box = box_of_root(cluster);
       }
-      set_child_box(node, lane, box);
-      whole.extend(box);
       primitives += primitives_of(accel_, node.child[lane]);
     }
     node.triangles = static_cast<std::uint32_t>(std::min<std::uint64_t>(primitives, ~std::uint32_t{0}));
-    return whole;
+    dealt.changes[number] = !all_stay;
+    return all_stay;
   }
 
   Aabb refit_above(NodeRef root) {
-    above_.insert(clusters_.above.begin(), clusters_.above.end());
     const auto refit = [&](const auto& self, NodeRef ref) -> Aabb {
       if (!is_above(ref)) return box_of_root(ref);
       Node& node = accel_.nodes[ref.node()];
@@ -239,8 +272,10 @@ class MeshUpdate {
   const scene::Mesh &before_, &mesh_;
   const scene::Opacity& opacity_;
   ClusterWork& work_;
-  std::unordered_set<std::uint32_t> above_;  // nodes
-  std::vector<NodeRef> places_;              // clusters, depth first
+  std::unordered_set<std::uint32_t> above_;                   // nodes
+  std::unordered_map<std::uint32_t, std::uint32_t> numbers_;  // of clusters, by the bits of their roots
+  std::vector<bool> moved_;                                   // by cluster
+  std::vector<NodeRef> places_;                               // clusters, depth first
   std::size_t next_place_ = 0;
 };
 

@@ -41,22 +41,33 @@ struct TreeClusters {
 TreeClusters cut_clusters(const Accel& accel, const scene::Scene& scene, std::optional<std::uint32_t> most,
                           std::uint64_t most_dealt);
 
+/// Clusters below a node above them were dealt out anew.
+struct DealtClusters {
+  NodeRef root;
+  std::vector<std::uint32_t> clusters;  ///< those below, depth first
+  std::vector<std::uint32_t> nodes;     ///< above them, the root first, depth first
+  std::vector<bool> hangs_anew;         ///< for each of these: it has another cluster for a child
+  std::vector<bool> changes;            ///< or a cluster below it is another or has moved
+  std::uint64_t boxes = 0;              ///< how often a box was added to another
+  bool is_better = false;               ///< a better arrangement was found
+};
+
 /// The work of an update in one mesh.
 struct ClusterWork {
   std::uint32_t mesh = 0;            ///< number in TreeClusters::meshes
   std::vector<std::uint32_t> moved;  ///< clusters with a primitive that has moved
   std::vector<std::uint64_t> boxes;  ///< for each of these: how often a box was added to another
   std::vector<bool> is_better;       ///< for each: its primitives got another order
-  bool deals_above = false;          ///< all clusters were dealt out anew, or else the nodes above were refitted
-  bool better_above = false;         ///< and found a better arrangement
-  std::uint64_t boxes_above = 0;     ///< if so
+  std::vector<DealtClusters>
+      dealt;  ///< nodes above that are in none of these, and have a moved cluster below, are refitted
 };
 
 /// Brings a structure over `before` to `after` as refit() does, but for meshes that changed: in a cluster of which a
 /// primitive has moved, the primitives are dealt out anew to its leaves (deal.h), if the sum of the areas becomes less
-/// than that of a refit. Then the same is done with all clusters of the mesh, which are dealt out to the places where
-/// clusters hang below the nodes above. A mesh of more than `most_dealt` clusters has these nodes refitted. `work` has
-/// a row for each mesh that changed. Nodes and leaves keep their places and sizes. What refit() refuses is refused.
+/// than that of a refit. Then the same is done below the highest nodes above clusters of which at least one cluster in
+/// four has moved: the clusters are dealt out to the places where they hang. Other nodes above are refitted, and in a
+/// mesh of more than `most_dealt` clusters all of them. `work` has a row for each mesh that changed. Nodes and leaves
+/// keep their places and sizes. What refit() refuses is refused.
 std::string update_clusters(Accel& accel, TreeClusters& clusters, const scene::Scene& before, const scene::Scene& after,
                             const SceneChange& change, BvhConfig::Storage storage, std::uint64_t most_dealt,
                             Executor& executor, std::vector<ClusterWork>& work);

@@ -116,10 +116,11 @@ BuilderFrame build_in_machine(const Prepared& p, const accel::ChangedParts& part
   const Config& c = p.config();
   const ShapeMemory memory(p.accel, c.accuracy, c.bvh, c.memory);
   const bool anew = update == FrameUpdate::kRebuild;
-  const BuilderWork work = done != nullptr
-                               ? ringbus::cycle::cluster_work(p.accel, memory, parts, done->clusters, done->work)
-                           : anew ? rebuild_of(p, p.accel, memory, parts)
-                                  : ringbus::cycle::refit_work(p.accel, memory, parts);
+  const BuilderWork work =
+      done != nullptr ? ringbus::cycle::cluster_work(p.accel, memory, parts, done->clusters, done->work,
+                                                     static_cast<std::uint64_t>(c.frames->builder.local_primitives))
+      : anew          ? rebuild_of(p, p.accel, memory, parts)
+                      : ringbus::cycle::refit_work(p.accel, memory, parts);
   const std::uint64_t line_bytes = ringbus::cycle::fetched_bytes(c.memory);
   if (cached.empty()) cached.emplace_back();
   BuilderFrame out;

@@ -139,11 +139,11 @@ class FrameSeries {
   report::FrameClusters clusters_of(const std::vector<accel::ClusterWork>& work) const {
     report::FrameClusters out;
     out.count = clusters_->count();
-    out.bytes = ringbus::cycle::cluster_bytes(*clusters_);
+    out.bytes = ringbus::cycle::cluster_bytes(p_.accel, *clusters_);
     for (const accel::ClusterWork& of_mesh : work) {
       out.rebuilt += of_mesh.moved.size();
       out.better += static_cast<std::uint64_t>(std::count(of_mesh.is_better.begin(), of_mesh.is_better.end(), true));
-      out.dealt_meshes += of_mesh.better_above;
+      out.dealt_meshes += std::ranges::any_of(of_mesh.dealt, &accel::DealtClusters::is_better);
     }
     return out;
   }

@@ -328,10 +328,17 @@ def clusters(facts, most, local):
             primitives += tree.primitives(ref)
         cuts.append((mesh, root, parts, above, number, numbers))
         number += len(parts)
+    lists, children = {}, 0  # of the children of nodes above
+    for _, _, _, above, _, _ in cuts:
+        for node in above:
+            lists[node] = children
+            children += len(tree.nodes[node])
     records_at = (number + 511) // 512 * 64
     numbers_at = records_at + number * RECORD
     counts = {"count": number, "rebuilt": 0, "better": 0, "dealt_meshes": 0,
-              "bytes": (number + 7) // 8 + number * RECORD + primitives * NUMBER}
+              "bytes": (number + 7) // 8 + number * RECORD + (primitives + children) * NUMBER}
+    lists_at = numbers_at + primitives * NUMBER
+    lists = {node: ("clusters", lists_at + NUMBER * at, NUMBER * len(tree.nodes[node])) for node, at in lists.items()}
     for mesh, root, parts, above, first, numbers in cuts:
         if not changed(tree, mesh):
             continue
@@ -356,7 +363,7 @@ def clusters(facts, most, local):
             tree.refit(mesh, ref)
             if len(held) > room:
                 tasks.append([[], [], 0])
-                room = max(64, len(held))
+                room = max(local, len(held))
             room -= len(held)
             list_ = ("clusters", numbers_at + NUMBER * numbers[c], NUMBER * len(held))
             tasks[-1][0] += [list_] + [builder.span(n) for n in tree.nodes_of(ref)]
@@ -369,19 +376,11 @@ def clusters(facts, most, local):
         heights[root] = 1
         if not moved or not above:
             continue
+        dealt = {}
         if len(parts) <= local:
-            hung = [ref for ref in hung_below(tree, root, set(above))]
-            shape, items = shape_of(tree, root, set(hung)), [(tree.box_below(mesh, r), i) for i, r in enumerate(hung)]
-            dealt, boxes = deal(shape, items)
-            if dealt_area(shape, dealt, 1) < dealt_area(shape, items, 1):
-                counts["dealt_meshes"] += 1
-                hang(tree, root, set(above), [hung[i] for _, i in dealt])
-            nodes = [builder.span(n) for n in above]
-            builder.task(2, [("clusters", records_at + first * RECORD, len(parts) * RECORD)] + nodes, nodes,
-                         boxes + 2 * len(items))
-            heights[root] = 2
-        else:
-            heights[root] = refit_above(builder, root, parts, {parts[c] for c in moved}, record)
+            deal_where_many_moved(tree, builder, mesh, root, parts, above, {parts[c] for c in moved}, record, lists, dealt)
+        counts["dealt_meshes"] += any(dealt.values())
+        heights[root] = refit_above(builder, root, parts, {parts[c] for c in moved}, record, set(dealt))
         tree.refit(mesh, root, set(parts))
     tree.refit_top()
     builder.refit_top(heights)
@@ -400,16 +399,56 @@ def hang(tree, ref, above, order):
             child[0] = order.pop(0)
 
 
-def refit_above(builder, ref, parts, moved, record):
+def deal_where_many_moved(tree, builder, mesh, ref, parts, above, moved, record, lists, dealt):
+    """Below the highest nodes of which a cluster in four has moved."""
+    if ref not in above:
+        return
+    hung = hung_below(tree, ref, set(above))
+    count = sum(r in moved for r in hung)
+    if count and 4 * count < len(hung):
+        for child in [child for child, _ in tree.nodes[ref]]:
+            deal_where_many_moved(tree, builder, mesh, child, parts, above, moved, record, lists, dealt)
+    if not count or 4 * count < len(hung):
+        return
+    shape, items = shape_of(tree, ref, set(hung)), [(tree.box_below(mesh, r), i) for i, r in enumerate(hung)]
+    order, boxes = deal(shape, items)
+    dealt[ref] = dealt_area(shape, order, 1) < dealt_area(shape, items, 1)
+    new = [hung[i] for _, i in order] if dealt[ref] else hung
+    inside = nodes_above(tree, ref, set(above))
+    nodes = [node for node in above if node in inside]
+    was = {node: [child for child, _ in tree.nodes[node]] for node in nodes}
+    below = {node: hung_below(tree, node, set(above)) for node in nodes}
+    hang(tree, ref, set(above), list(new))
+    writes = []
+    for node in nodes:
+        now = hung_below(tree, node, set(above))
+        if [child for child, _ in tree.nodes[node]] != was[node]:
+            writes.append(lists[node])
+        if now != below[node] or any(r in moved for r in now):
+            writes.append(builder.span(node))
+    builder.task(2, [record(parts.index(r)) for r in hung if r not in moved] + [lists[node] for node in nodes], writes, boxes + 2 * len(items))
+
+
+def nodes_above(tree, ref, above):
+    return {ref}.union(*(nodes_above(tree, child, above) for child, _ in tree.nodes[ref])) if ref in above else set()
+
+
+def refit_above(builder, ref, parts, moved, record, dealt):
+    """Children that have moved are read again."""
     if ref in parts:
         return 1 if ref in moved else 0
-    children = [child for child, _ in builder.tree.nodes[ref]]
-    level = max(refit_above(builder, child, parts, moved, record) for child in children)
-    if level == 0:
+    if ref in dealt:
+        return 2
+    reads, top = [], 0
+    for child, _ in builder.tree.nodes[ref]:
+        level = refit_above(builder, child, parts, moved, record, dealt)
+        top = max(top, level)
+        if level:
+            reads.append(record(parts.index(child)) if child in parts else builder.span(child))
+    if top == 0:
         return 0
-    reads = [record(parts.index(child)) if child in parts else builder.span(child) for child in children]
-    builder.task(level + 1, [builder.span(ref)] + reads, [builder.span(ref)], len(children))
-    return level + 1
+    builder.task(top + 1, [builder.span(ref)] + reads, [builder.span(ref)], len(reads))
+    return top + 1
 
 
 # ---- the comparison

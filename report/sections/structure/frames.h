@@ -35,7 +35,7 @@ void describe(V& v, const FrameClusters& r) {
   v.field("rebuilt", r.rebuilt, "clusters", "those with a primitive that has moved, in which the tree is sought anew");
   v.field("better", r.better, "clusters", "those of them in which it has less area than a refit, and is taken");
   v.field("dealt_meshes", r.dealt_meshes, "meshes",
-          "meshes whose clusters were hung anew below the nodes above them, since that has less area than a refit");
+          "meshes of which clusters were hung anew below nodes above them, since that has less area than a refit");
   v.field("bytes", r.bytes, "bytes", "bytes that the builder keeps of clusters beside the structure");
 }
 

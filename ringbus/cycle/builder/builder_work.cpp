@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <bit>
 #include <unordered_map>
+#include <unordered_set>
 
-#include "core/config/fields/image.h"
+#include "ringbus/cycle/builder/builder_sources.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -12,88 +13,16 @@ namespace {
 
 using accel::NodeRef;
 
-constexpr std::uint32_t kPositionBytes = 36;  // three vertices
-constexpr std::uint32_t kMatrixBytes = 48;
-constexpr std::uint32_t kRecordBytes = BuilderConfig::kRecordBytes;
-constexpr std::uint32_t kNumberBytes = 4;  // of a primitive of a cluster
-constexpr std::uint64_t kChunk = 64;       // primitives of a task that streams
-constexpr std::uint64_t kCorners = 8;      // of an instance's box, which are brought into the world
-
-/// Where the builder finds what it reads beside the structure.
-class Sources {
- public:
-  Sources(const accel::Accel& accel, const ShapeMemory& memory) {
-    std::uint64_t primitives = 0;
-    for (const accel::InstanceNode& instance : accel.instances)
-      if (instance.triangles > 0 && first_.emplace(instance.root.bits(), primitives).second)
-        primitives += instance.triangles;
-    constexpr std::uint64_t kPage = 4096;
-    const auto behind = [](std::uint64_t at, std::uint64_t bytes) { return (at + bytes + kPage - 1) / kPage * kPage; };
-    positions_ = behind(memory.size_bytes(), 0);
-    matrices_ = behind(positions_, primitives * kPositionBytes);
-    records_ = behind(matrices_, accel.instances.size() * kMatrixBytes);
-    top_records_ = records_ + primitives * kRecordBytes;
-    micromaps_ = behind(top_records_, accel.instances.size() * kRecordBytes);
-  }
-  Sources(const accel::Accel& accel, const ShapeMemory& memory, const accel::TreeClusters& clusters)
-      : Sources(accel, memory) {
-    std::uint64_t count = 0, primitives = 0;
-    for (const accel::MeshClusters& mesh : clusters.meshes) {
-      first_cluster_.push_back(count);
-      for (const accel::Cluster& cluster : mesh.clusters) {
-        first_number_.push_back(primitives);
-        primitives += cluster.primitives;
-        ++count;
-      }
-    }
-    bits_ = micromaps_;  // where there are clusters there are none
-    cluster_records_ = bits_ + (count + 511) / 512 * 64;
-    numbers_ = cluster_records_ + count * kRecordBytes;
-  }
-
-  /// Number of the first primitive of the mesh below a root among all of them.
-  std::uint64_t first(NodeRef root) const { return first_.at(root.bits()); }
-  ShapeSpan positions(std::uint64_t primitive, std::uint64_t count = 1) const {
-    return {positions_ + primitive * kPositionBytes, static_cast<std::uint32_t>(count * kPositionBytes)};
-  }
-  ShapeSpan matrix(std::uint32_t instance) const {
-    return {matrices_ + instance * std::uint64_t{kMatrixBytes}, kMatrixBytes};
-  }
-  ShapeSpan records(std::uint64_t first, std::uint64_t count, bool top) const {
-    return {(top ? top_records_ : records_) + first * kRecordBytes, static_cast<std::uint32_t>(count * kRecordBytes)};
-  }
-
-  /// Of a number of clusters of a mesh; meshes and clusters are those of TreeClusters.
-  ShapeSpan cluster_bits(std::size_t mesh, std::uint64_t count) const {
-    const std::uint64_t first = first_cluster_[mesh] / 8, end = (first_cluster_[mesh] + count + 7) / 8;
-    return {bits_ + first, static_cast<std::uint32_t>(end - first)};
-  }
-  ShapeSpan cluster_records(std::size_t mesh, std::uint64_t first, std::uint64_t count) const {
-    return {cluster_records_ + (first_cluster_[mesh] + first) * kRecordBytes,
-            static_cast<std::uint32_t>(count * kRecordBytes)};
-  }
-  ShapeSpan numbers(std::size_t mesh, std::uint64_t cluster, std::uint32_t primitives) const {
-    return {numbers_ + first_number_[first_cluster_[mesh] + cluster] * kNumberBytes, primitives * kNumberBytes};
-  }
-
-  /// Of the triangles of a leaf; no bytes if they have none.
-  ShapeSpan micromaps(const accel::Accel& accel, NodeRef leaf) const {
-    return {micromaps_ + accel.micromaps.places.before(leaf.first_block()), accel.micromaps.places.of(leaf)};
-  }
-
- private:
-  std::unordered_map<std::uint32_t, std::uint64_t> first_;
-  std::uint64_t positions_ = 0, matrices_ = 0, records_ = 0, top_records_ = 0, micromaps_ = 0;
-  std::vector<std::uint64_t> first_cluster_, first_number_;  // by mesh and by cluster
-  std::uint64_t bits_ = 0, cluster_records_ = 0, numbers_ = 0;
-};
+constexpr std::uint64_t kChunk = 64;   // primitives of a task that streams
+constexpr std::uint64_t kCorners = 8;  // of an instance's box, which are brought into the world
 
 class Planner {
  public:
   Planner(const accel::Accel& accel, const ShapeMemory& memory, std::uint64_t local = 0)
       : accel_(accel), memory_(memory), sources_(accel, memory), local_(local) {}
-  Planner(const accel::Accel& accel, const ShapeMemory& memory, const accel::TreeClusters& clusters)
-      : accel_(accel), memory_(memory), sources_(accel, memory, clusters) {}
+  Planner(const accel::Accel& accel, const ShapeMemory& memory, const accel::TreeClusters& clusters,
+          std::uint64_t local)
+      : accel_(accel), memory_(memory), sources_(accel, memory, clusters), local_(local) {}
 
   BuilderWork refit(const accel::ChangedParts& parts) {
     std::unordered_map<std::uint32_t, std::size_t> heights;  // by the bits of a mesh's root
@@ -181,7 +110,7 @@ class Planner {
       const accel::Cluster& cluster = mesh.clusters[number];
       if (cluster.primitives > room) {
         work_.level(1).emplace_back();
-        room = std::max<std::uint64_t>(kChunk, cluster.primitives);
+        room = std::max<std::uint64_t>(local_, cluster.primitives);
       }
       room -= cluster.primitives;
       BuilderTask& task = work_.level(1).back();
@@ -193,14 +122,32 @@ class Planner {
       moved.emplace(cluster.root.bits(), number);
     }
     if (moved.empty() || mesh.above.empty()) return 1;
-    if (!done.deals_above) return refit_above(mesh, done.mesh, moved);
-    BuilderTask task{{sources_.cluster_records(done.mesh, 0, mesh.clusters.size())}, {}, done.boxes_above, false};
-    for (const std::uint32_t node : mesh.above) {
-      task.reads.push_back(span(NodeRef::inner(node)));
-      task.writes.push_back(span(NodeRef::inner(node)));
+    std::unordered_map<std::uint32_t, std::size_t> dealt;  // by the bits of the root
+    for (std::size_t i = 0; i < done.dealt.size(); ++i) dealt.emplace(done.dealt[i].root.bits(), i);
+    std::unordered_set<std::uint32_t> in_store;
+    for (const std::uint32_t cluster : done.moved) in_store.insert(cluster);
+    for (const accel::DealtClusters& of : done.dealt) deal_clusters(mesh, done.mesh, of, in_store);
+    return refit_above(mesh, done.mesh, moved, dealt);
+  }
+
+  /// What hangs below a node is dealt out by the records of its clusters, of which those that have moved are still in
+  /// the store, and the lists of children. Nodes are written below which something else hangs, or something has moved,
+  /// and lists that are new.
+  void deal_clusters(const accel::MeshClusters& mesh, std::size_t number, const accel::DealtClusters& dealt,
+                     const std::unordered_set<std::uint32_t>& in_store) {
+    BuilderTask task{{}, {}, dealt.boxes, false};
+    for (const std::uint32_t cluster : dealt.clusters)
+      if (!in_store.contains(cluster)) task.reads.push_back(sources_.cluster_records(number, cluster, 1));
+    const auto first =
+        static_cast<std::size_t>(std::ranges::find(mesh.above, dealt.nodes.front()) - mesh.above.begin());
+    for (std::size_t i = 0; i < dealt.nodes.size(); ++i) {
+      const ShapeSpan list =
+          sources_.children(number, first + i, static_cast<std::uint32_t>(accel_.nodes[dealt.nodes[i]].count));
+      task.reads.push_back(list);
+      if (dealt.hangs_anew[i]) task.writes.push_back(list);
+      if (dealt.changes[i]) task.writes.push_back(span(NodeRef::inner(dealt.nodes[i])));
     }
     work_.level(2).push_back(std::move(task));
-    return 2;
   }
 
   void update_cluster(NodeRef ref, std::uint64_t first, BuilderTask& task) {
@@ -212,21 +159,27 @@ class Planner {
     for (int lane = 0; lane < node.count; ++lane) update_cluster(node.child[lane], first, task);
   }
 
-  /// The nodes above clusters that moved, from these up.
+  /// The nodes above clusters that moved, from these or from those that were dealt out up. A node has the boxes of its
+  /// children, and those that have moved are read again. Returns the level at which the root is written.
   std::size_t refit_above(const accel::MeshClusters& mesh, std::size_t number,
-                          const std::unordered_map<std::uint32_t, std::uint32_t>& moved) {
+                          const std::unordered_map<std::uint32_t, std::uint32_t>& moved,
+                          const std::unordered_map<std::uint32_t, std::size_t>& dealt) {
     std::unordered_map<std::uint32_t, std::uint32_t> numbers;  // of all clusters
     for (std::uint32_t c = 0; c < mesh.clusters.size(); ++c) numbers.emplace(mesh.clusters[c].root.bits(), c);
     const auto refit = [&](const auto& self, NodeRef ref) -> std::size_t {  // the level; 0: nothing below has moved
       if (numbers.contains(ref.bits())) return moved.contains(ref.bits()) ? 1 : 0;
+      if (dealt.contains(ref.bits())) return 2;
       const accel::Node& node = accel_.nodes[ref.node()];
-      BuilderTask task{{span(ref)}, {span(ref)}, node.count, false};
+      BuilderTask task{{span(ref)}, {span(ref)}, 0, false};
       std::size_t level = 0;
       for (int lane = 0; lane < node.count; ++lane) {
+        const std::size_t below = self(self, node.child[lane]);
+        if (below == 0) continue;
         const auto cluster = numbers.find(node.child[lane].bits());
         task.reads.push_back(cluster == numbers.end() ? span(node.child[lane])
                                                       : sources_.cluster_records(number, cluster->second, 1));
-        level = std::max(level, self(self, node.child[lane]));
+        ++task.boxes;
+        level = std::max(level, below);
       }
       if (level == 0) return 0;
       work_.level(level + 1).push_back(std::move(task));
@@ -344,7 +297,7 @@ class Planner {
 
   const accel::Accel& accel_;
   const ShapeMemory& memory_;
-  Sources sources_;
+  BuilderSources sources_;
   std::uint64_t local_;
   BuilderWork work_;
   std::uint64_t first_ = 0;  // primitive of the mesh that is rebuilt
@@ -376,14 +329,19 @@ BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, c
 }
 
 BuilderWork cluster_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
-                         const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done) {
-  return Planner(accel, memory, clusters).update(parts, clusters, done);
+                         const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done,
+                         std::uint64_t local_primitives) {
+  return Planner(accel, memory, clusters, local_primitives).update(parts, clusters, done);
 }
 
-std::uint64_t cluster_bytes(const accel::TreeClusters& clusters) {
-  std::uint64_t bytes = (clusters.count() + 7) / 8 + clusters.count() * kRecordBytes;
-  for (const accel::MeshClusters& mesh : clusters.meshes)
-    for (const accel::Cluster& cluster : mesh.clusters) bytes += std::uint64_t{cluster.primitives} * kNumberBytes;
+std::uint64_t cluster_bytes(const accel::Accel& accel, const accel::TreeClusters& clusters) {
+  std::uint64_t bytes = (clusters.count() + 7) / 8 + clusters.count() * BuilderSources::kRecordBytes;
+  for (const accel::MeshClusters& mesh : clusters.meshes) {
+    for (const accel::Cluster& cluster : mesh.clusters)
+      bytes += std::uint64_t{cluster.primitives} * BuilderSources::kNumberBytes;
+    for (const std::uint32_t node : mesh.above)
+      bytes += static_cast<std::uint64_t>(accel.nodes[node].count) * BuilderSources::kNumberBytes;
+  }
   return bytes;
 }
 

@@ -51,13 +51,16 @@ BuilderWork rebuild_work(const accel::Accel& accel, const ShapeMemory& memory, c
 /// An update of clusters that has been done (`done`, accel::update_clusters). A bit a cluster says which have moved.
 /// Each of these reads the list of its primitives' numbers, 4 bytes each, its nodes, for their references, and the
 /// positions of its primitives, and writes its nodes and leaves, a record of 32 bytes with its box and root, and the
-/// list if it is another. A task takes neighbours that moved, up to 64 primitives. Where the clusters of a mesh are
-/// dealt out, the records of all of them and the nodes above are read and these nodes written; otherwise nodes above
-/// clusters that moved read themselves and the records or nodes below, and are written. The top level is refitted.
+/// list if it is another. A task takes neighbours that moved, up to `local_primitives`. Where clusters are dealt out,
+/// the records of those that have not moved are read, and for each node above a list of its children, 4 bytes each. A
+/// list that is new is written, and a node with another cluster below it or one that moved. Other nodes above clusters
+/// that moved read themselves and the records or nodes of children that have moved, and are written. The top level is
+/// refitted.
 BuilderWork cluster_work(const accel::Accel& accel, const ShapeMemory& memory, const accel::ChangedParts& parts,
-                         const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done);
+                         const accel::TreeClusters& clusters, std::span<const accel::ClusterWork> done,
+                         std::uint64_t local_primitives);
 
-/// Bytes that the builder keeps of clusters beside the structure: their bits, records and lists.
-std::uint64_t cluster_bytes(const accel::TreeClusters& clusters);
+/// Bytes that the builder keeps of clusters beside the structure: their bits, records and lists, and those of children.
+std::uint64_t cluster_bytes(const accel::Accel& accel, const accel::TreeClusters& clusters);
 
 }  // namespace carousel::ringbus::cycle

@@ -95,7 +95,7 @@ TEST_F(ClustersRun, TheBuilderMovesWhatAClusterNeeds) {
   EXPECT_EQ(row["clusters"], Json({{"count", 1}, {"rebuilt", 1}, {"better", 0}, {"dealt_meshes", 0}, {"bytes", 41}}));
 }
 
-TEST_F(ClustersRun, ASmallPartThatMovesTakesATenthOfTheBytesOfARebuild) {
+TEST_F(ClustersRun, ASmallPartThatMovesTakesATwentiethOfTheBytesOfARebuild) {
   program_.write("flock.gltf", flock(3000, 90));
   const Json row = second_row(kFlock, {kClusters, "frames.step=0.5"});
   EXPECT_EQ(row["update"], "clusters");
@@ -103,11 +103,10 @@ TEST_F(ClustersRun, ASmallPartThatMovesTakesATenthOfTheBytesOfARebuild) {
   EXPECT_LT(10 * row["clusters"]["rebuilt"].get<int>(), row["clusters"]["count"].get<int>());
   const std::uint64_t rebuild = bytes_of(second_row(kFlock, {"frames.update=rebuild", "frames.step=0.5"}));
   EXPECT_EQ(row["rebuild_bytes"], rebuild);
-  EXPECT_LT(10 * bytes_of(row), rebuild);
+  EXPECT_LT(20 * bytes_of(row), rebuild);
   EXPECT_LT(bytes_of(row), bytes_of(second_row(kFlock, {"frames.step=0.5"}))) << "a refit of the whole mesh";
   const Json above = second_row(kFlock, {kClusters, "frames.step=0.5", "frames.builder.local_primitives=64"});
   EXPECT_EQ(above["clusters"]["dealt_meshes"], 0) << "its clusters do not fit into the store";
-  EXPECT_LT(bytes_of(above), bytes_of(row));
 }
 
 // Where nothing but the far end of the series matters: clusters are hung anew, and find better orders.
