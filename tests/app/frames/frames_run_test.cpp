@@ -74,6 +74,43 @@ TEST_F(FramesRun, ThirtyFramesOfASwarmCloseTheirTotals) {
   EXPECT_EQ(report["digest"], frames["rows"][29]["digest"]) << "the rest of the report is that of the last frame";
 }
 
+TEST_F(FramesRun, ThirtyFramesOfASkinAndOfASwarmHaveTheHitsOfBuildsFromNothing) {
+  for (const std::string& scene : {kArm, kSwarm}) {
+    const Json anew = run(scene, {"frames.count=30", "engine.kind=native", "frames.update=rebuild"});
+    ASSERT_EQ(anew["frames"]["rows"].size(), 30u);
+    EXPECT_NE(digests(anew).front(), digests(anew)[20]) << "it moves";
+    for (const char* update : {"refit", "clusters", "rebuild"}) {
+      SCOPED_TRACE(scene + " " + update);
+      const Json report = run(
+          scene, {"frames.count=30", "engine.kind=cycle", std::string("frames.update=") + update, "verify=reference"});
+      EXPECT_EQ(digests(report), digests(anew));
+      const Json& frames = report["frames"];
+      EXPECT_EQ(report["verify"]["mismatches"], 0);
+      EXPECT_EQ(report["verify"]["compared"], frames["rays"]);
+      std::uint64_t cycles = 0, bytes = 0, rays = 0, updates = 0;
+      for (const Json& row : frames["rows"]) {
+        cycles += row["cycles"].get<std::uint64_t>();
+        rays += row["rays"].get<std::uint64_t>();
+        if (!row.contains("builder")) continue;
+        ++updates;
+        EXPECT_EQ(row["update"], update) << row["why"];
+        cycles += row["builder"]["cycles"].get<std::uint64_t>();
+        bytes +=
+            row["builder"]["bytes_read"].get<std::uint64_t>() + row["builder"]["bytes_written"].get<std::uint64_t>();
+      }
+      EXPECT_GE(updates, 24u);  // the arm stops after a second
+      EXPECT_EQ(frames["cycles"], cycles);
+      EXPECT_EQ(frames["builder_bytes"], bytes);
+      EXPECT_EQ(frames["rays"], rays);
+    }
+    for (const std::size_t frame : {7u, 20u}) {
+      const Json& row = anew["frames"]["rows"][frame];
+      EXPECT_EQ(run(scene, {"scene.time=" + row["time"].dump(), "engine.kind=cycle"})["digest"], row["digest"])
+          << frame;
+    }
+  }
+}
+
 // Two triangles in one leaf. In memory: a node of 256 bytes; the leaf's block of 160 at 256; positions of 36 bytes a
 // triangle at 4096; the matrix at 8192. Lines have 64 bytes. The leaf reads 3 and 2 lines, the node 4, 1 and 3.
 TEST_F(FramesRun, TheBuilderMovesWhatARefitNeeds) {
