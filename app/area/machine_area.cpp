@@ -168,7 +168,9 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   const std::int64_t caches = drawn.parts.caches.empty()
                                   ? (c.topology.resources + c.memory.shared_by - 1) / c.memory.shared_by
                                   : static_cast<std::int64_t>(drawn.parts.cache_nodes());
-  store(AreaPart::kL2, static_cast<double>(caches * c.memory.l2_kib));
+  const std::int64_t pages = c.memory.translation.page_bytes > 0 ? c.memory.translation.entries : 0;
+  store(AreaPart::kL2, static_cast<double>(caches) *
+                           (static_cast<double>(c.memory.l2_kib) + static_cast<double>(kTlbEntryBytes * pages) / kKiB));
   if (drawn.parts.caches.empty()) {  // else links bring the lines
     const MemoryConfig& memory = c.memory;
     const std::int64_t width = memory.l2_answer_bytes_per_cycle > 0

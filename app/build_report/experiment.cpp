@@ -163,6 +163,12 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
     verifying->set_nearest(static_cast<std::size_t>(p.config().rays.query.nearest));
     if (p.nearest_hits) p.nearest_hits->judge_by(&*verifying);
   }
+  SeriesFrame alone{.cached = {}, .began = {}, .last = true};
+  std::optional<RasterPass> pass;
+  if (p.config().engine.kind == EngineKind::kCycle) {
+    pass = rasterise_in_machine(p, job, interrupt.token(), (frame != nullptr ? frame : &alone)->cached);
+    if (pass && frame == nullptr) frame = &alone;  // its lines are there when the rays begin
+  }
   const bool picture = p.config().workload.kind == WorkloadConfig::Kind::kRays;
   const auto rays_a_path = static_cast<std::uint64_t>(picture ? 2 * p.config().image.max_depth : 1);
   RayCensus census(verifying ? static_cast<Workload&>(*verifying) : job.workload(),
@@ -193,6 +199,11 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   }
   if (trace != nullptr) write_trace(*trace, result);
   report::Report report = build_report(p, job, result, verifying ? &*verifying : nullptr);
+  if (pass) {
+    report.raster_unit = pass->cost;
+    report.raster_unit->limits = pass->cost.cycles > report.engine.cycles.value_or(0);
+    report.incomplete |= !pass->complete;
+  }
   if (power && report.energy) report.energy->peak = power->peak();
   add_census(report, census, p.accel);
   if (result.complete && !heat.empty())

@@ -193,6 +193,9 @@ class EnergyAccount::Sum {
     const auto line = static_cast<double>(a_.c_.memory.line_bytes);
     access(EnergyPart::kL2, line * static_cast<double>(e_.l2_lines) + kWord * static_cast<double>(e_.asked_ahead),
            a_.l2_kib_);
+    if (e_.l2_pages > 0)
+      access(EnergyPart::kL2, kWord * static_cast<double>(e_.l2_pages),
+             static_cast<double>(a_.c_.memory.translation.entries * kTlbEntryBytes) / 1024);
     if (a_.l1_kib_ > 0) access(EnergyPart::kL1, line * static_cast<double>(e_.l1_lines), a_.l1_kib_);
     Parts::for_each([&]<class P>(std::size_t i) {
       if (!e_.parts.of<P>()) return;
@@ -271,6 +274,7 @@ ringbus::EnergyEvents energy_events(const report::Report& r) {
   for (const report::Cache& cache : r.memory->caches) {
     out.l2_lines += cache.counts.lines;
     out.asked_ahead += cache.ahead ? cache.ahead->asked : 0;
+    out.l2_pages += cache.counts.pages + cache.counts.walks;
   }
   if (r.memory->own_caches) out.l1_lines = r.memory->own_caches->counts.lines;
   out.parts = r.parts;

@@ -241,6 +241,7 @@ constexpr Row kRows[] = {
     {"memory.fetch", kPackets},
     {"memory.fetch_ahead", kPackets},
     {"memory.strip_ahead", kEndFlags},
+    {"memory.translation.entries", kTranslates},
     {"memory.dram.channels", kBanks},
     {"memory.dram.interleave_bytes", kBanks},
     {"memory.dram.mapping", kBanks},
@@ -264,10 +265,12 @@ constexpr Row kRows[] = {
     {"shading.instruction_cache.miss_cycles", kInstructionCache},
     {"shading.program.any_hit", kAnyHitShaders},
     {"shading.data_cache", kShaderPrograms},
+    {"shading.data_cache", kShaderReads},
     {"shading.data_cache.line_bytes", kDataCache},
     {"shading.data_cache.ways", kDataCache},
     {"shading.data_cache.latency_cycles", kDataCache},
     {"shading.translation", kShaderPrograms},
+    {"shading.translation", kShaderReads},
     {"shading.translation.entries", kPages},
     {"shading.cycles_per_lookup", kCycle},
     {"shading.cycles_per_any_hit", kCycle},
@@ -319,32 +322,6 @@ constexpr Row kRows[] = {
 /// True if `key` is `section` or lies below it.
 bool lies_in(std::string_view key, std::string_view section) {
   return key.starts_with(section) && (key.size() == section.size() || key[section.size()] == '.');
-}
-
-/// The tests of a unit of this kind.
-constexpr const Condition* condition_of(UnitKind kind) {
-  switch (kind) {
-    case UnitKind::kPlane:
-      return &kPlaneUnits;
-    case UnitKind::kBundle:
-      return &kBundleUnits;
-    case UnitKind::kTransform:
-      return &kTransforms;
-    case UnitKind::kProcedural:
-      return &kProcedural;
-    case UnitKind::kAnyHit:
-      return &kAnyHitUnits;
-    case UnitKind::kMicromap:
-      return &kMicromaps;
-    case UnitKind::kHitBuffer:
-      return &kNearest;
-    case UnitKind::kDecoder:
-      return &kPackedLeaves;
-    case UnitKind::kReciprocal:
-      return &kBundles;
-    default:  // every scene puts the others to use
-      return nullptr;
-  }
 }
 
 /// The name below a section; empty if the key does not lie there.

@@ -280,6 +280,9 @@ inline constexpr Condition kObjects{[](const C& c, const S&) { return !c.scene.o
 inline constexpr Condition kShaderPrograms{
     [](const C& c, const S&) { return c.shading.program.any() && c.engine.kind == EngineKind::kCycle; },
     "shader workers run no program"};
+inline constexpr Condition kShaderReads{
+    [](const C& c, const S& s) { return c.workload.kind != WorkloadKind::kRaysFrom && !s.gaussians; },
+    "programs meet no surface whose data they read"};
 inline constexpr Condition kConstantShading{[](const C& c, const S&) { return !c.shading.program.any(); },
                                             "shading takes the time of its programs"};
 inline constexpr Condition kInstructionCache{[](const C& c, const S&) { return c.shading.instruction_cache.bytes > 0; },
@@ -309,6 +312,8 @@ inline constexpr Condition kVectors{[](const C& c, const S&) { return any_tester
 
 inline constexpr Condition kWarps{[](const C& c, const S&) { return has_warps(c); },
                                   "rays go by themselves, not in warps"};
+inline constexpr Condition kTranslates{[](const C& c, const S&) { return c.memory.translation.page_bytes > 0; },
+                                       "addresses are physical"};
 inline constexpr Condition kRepacks{[](const C& c, const S&) {
                                       return any_testers(c, [](const TestersConfig& one) {
                                         return one.simt.compaction == SimtConfig::Compaction::kRepack;
@@ -358,5 +363,31 @@ inline constexpr Condition kSkyOfOneColor{[](const C& c, const S&) { return !has
 inline constexpr Condition kTurnedSky{[](const C& c, const S&) { return !c.scene.sky || has_sky_map(c); },
                                       "the sky has no map"};
 inline constexpr Condition kSkyMap{[](const C& c, const S&) { return has_sky_map(c); }, "the sky has no map"};
+
+/// The tests of a unit of this kind.
+constexpr const Condition* condition_of(UnitKind kind) {
+  switch (kind) {
+    case UnitKind::kPlane:
+      return &kPlaneUnits;
+    case UnitKind::kBundle:
+      return &kBundleUnits;
+    case UnitKind::kTransform:
+      return &kTransforms;
+    case UnitKind::kProcedural:
+      return &kProcedural;
+    case UnitKind::kAnyHit:
+      return &kAnyHitUnits;
+    case UnitKind::kMicromap:
+      return &kMicromaps;
+    case UnitKind::kHitBuffer:
+      return &kNearest;
+    case UnitKind::kDecoder:
+      return &kPackedLeaves;
+    case UnitKind::kReciprocal:
+      return &kBundles;
+    default:  // every scene puts the others to use
+      return nullptr;
+  }
+}
 
 }  // namespace carousel::conditions

@@ -25,7 +25,7 @@ struct AheadCounts {
 struct CacheCounts {
   std::uint64_t requests = 0, lines = 0, hits = 0, merged = 0, misses = 0, written = 0, kept = 0, write_fetches = 0,
                 written_back = 0, drained = 0, past_end = 0, past_end_misses = 0, pushed = 0, port_waits = 0,
-                mshr_waits = 0, port_busy = 0;
+                mshr_waits = 0, port_busy = 0, pages = 0, page_misses = 0, walks = 0, walk_reads = 0, page_waits = 0;
 
   static constexpr auto counters() {
     using C = CacheCounts;
@@ -48,6 +48,11 @@ struct CacheCounts {
         Counter{"port_waits", &C::port_waits, "lines", "lines for which the ports of their bank were not free at once"},
         Counter{"mshr_waits", &C::mshr_waits, "lines", "lines that waited until their bank could fetch another line"},
         Counter{"port_busy_cycles", &C::port_busy, "cycles", "cycles in which the ports looked up lines, of all banks"},
+        Counter{"pages", &C::pages, "lines", "lines whose pages were looked up in its TLB (memory.translation)"},
+        Counter{"page_misses", &C::page_misses, "lines", "lines of these whose pages were not there"},
+        Counter{"walks", &C::walks, "pages", "pages for which its walker read the page table"},
+        Counter{"walk_reads", &C::walk_reads, "lines", "lines that it read from memory for that, one a level"},
+        Counter{"page_wait_cycles", &C::page_waits, "line-cycles", "time that lines waited for their pages"},
     };
   }
   friend bool operator==(const CacheCounts&, const CacheCounts&) = default;

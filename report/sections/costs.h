@@ -229,7 +229,7 @@ template <class V>
 void describe(V& v, const AreaParts& r) {
   constexpr auto kPorts = static_cast<std::size_t>(AreaPart::kMemoryPorts);  // older reports have none
   for (std::size_t i = 0; i < kAreaParts.size(); ++i)
-    v.section_if(i != kPorts || r.of[i].mm2 > 0, kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
+    v.section_if(i < kNewer || r.of[i].mm2 > 0, kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
   Parts::for_each([&]<class P>(std::size_t i) { v.section(P::kSection, r.declared[i], P::kAreaMeaning); });
 }
 

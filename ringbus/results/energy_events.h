@@ -26,9 +26,9 @@ struct EnergyEvents {
     bool warps = false;  ///< the stacks are registers
   };
   std::vector<OfResource> resources;
-  std::vector<std::uint64_t> link_bytes;  ///< by link of the report
-  std::vector<std::uint64_t> row_bytes;   ///< by row of the byte ledger
-  std::uint64_t l2_lines = 0, asked_ahead = 0, l1_lines = 0;
+  std::vector<std::uint64_t> link_bytes;                                    ///< by link of the report
+  std::vector<std::uint64_t> row_bytes;                                     ///< by row of the byte ledger
+  std::uint64_t l2_lines = 0, asked_ahead = 0, l1_lines = 0, l2_pages = 0;  ///< pages looked up or put into TLBs
   PartCounts<Parts> parts;
   std::uint64_t shaded = 0, products = 0, lookups = 0;
   ShadeProgramCounts programs;  ///< of shader workers, as the next one

@@ -6,8 +6,9 @@
 namespace carousel::ringbus {
 
 /// All addresses of the simulated memory lie below: shapes and spilled entries, records of rays, states of paths, the
-/// film (cycle/shading/ray_data.cpp).
+/// film (cycle/shading/ray_data.cpp), page tables of shared caches.
 inline constexpr std::uint64_t kMemoryEnd = std::uint64_t{1} << 53;
+inline constexpr std::uint64_t kPageTables = kMemoryEnd - (std::uint64_t{1} << 48);
 
 /// A request to the memory behind the caches, when it arrives there.
 struct MemoryRequest {

@@ -22,7 +22,9 @@ class FramePaths {
 
   std::uint64_t count() const { return count_; }
   /// Pixel and sample of the path that begins as number `i`. Precondition: i < count().
-  PixelSample at(std::uint64_t i) const { return order_.at(sample_ == nullptr ? i : sample_->ordinal(i)); }
+  PixelSample at(std::uint64_t i) const { return order_.at(ordinal(i)); }
+  /// Its ordinal in the frame. Same precondition.
+  std::uint64_t ordinal(std::uint64_t i) const { return sample_ == nullptr ? i : sample_->ordinal(i); }
 
   /// So many further paths have begun, and their rays have been appended to a batch or are held. Returns whether all
   /// paths have begun.

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <tuple>
+#include <utility>
 
 #include <glm/matrix.hpp>
 
 #include "scene/model/opacity.h"
 #include "shading/camera/camera_rays.h"
+#include "shading/camera/pixel_order.h"
 #include "shading/math/sampler.h"
 #include "shading/raster/edge_functions.h"
 #include "shading/raster/screen.h"
@@ -16,11 +18,9 @@ namespace carousel::shading {
 
 namespace {
 
-constexpr std::uint32_t kBinSide = 8;  // pixels, along each side
+constexpr std::uint32_t kBinSide = PixelOrder::kTile;  // pixels, along each side
 
-struct TriangleRef {
-  std::uint32_t instance, primitive;
-};
+using TriangleRef = FirstHits::Triangle;
 
 DVec3 placed(const scene::Affine& m, const Vec3& p) {
   return DMat3(m.linear) * DVec3(p) + DVec3(m.translation);
@@ -47,7 +47,8 @@ std::array<DVec3, 8> world_box(const scene::Sphere& sphere, const scene::Affine&
 class Rasterizer {
  public:
   Rasterizer(const scene::Scene& scene, const scene::Camera& camera, const CameraRays& rays, const Sampler& sampler,
-             const Screen& screen, std::uint32_t samples, const RayFlags& ray_flags, const AnyHit* any_hit)
+             const Screen& screen, std::uint32_t samples, const RayFlags& ray_flags, const AnyHit* any_hit,
+             bool keeps_tiles)
       : scene_(scene),
         rays_(rays),
         sampler_(sampler),
@@ -62,6 +63,7 @@ class Rasterizer {
     out_.samples = samples;
     out_.hits.resize(pixels * samples);
     out_.left_to_rays.resize(pixels);
+    if (keeps_tiles) out_.tiles.resize(bins_.size());
   }
 
   FirstHits run(Executor& executor) {
@@ -114,7 +116,8 @@ class Rasterizer {
     for (std::uint32_t y = area.y0; y < area.y1; ++y) {
       for (std::uint32_t x = area.x0; x < area.x1; ++x) count_pixel(y * screen_.width() + x, counts);
     }
-    std::vector<TriangleRef>().swap(bins_[tile]);
+    std::vector<TriangleRef> triangles = std::exchange(bins_[tile], {});
+    if (!out_.tiles.empty()) out_.tiles[tile] = {std::move(triangles), counts.tested};
   }
 
   void draw_triangle(TriangleRef ref, const PixelBox& area, const std::vector<Ray>& rays, FirstHits::Counts& counts) {

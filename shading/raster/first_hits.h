@@ -15,11 +15,24 @@ namespace carousel::shading {
 /// The first hits of the camera rays of a frame, found without tracing them.
 struct FirstHits {
   using Counts = RasterCounts;
+  /// Of a sample in the simulated memory: distance, weights, instance and primitive. They stand there in the order in
+  /// which the paths of the frame start (PixelOrder).
+  static constexpr std::uint32_t kSampleBytes = 20;
 
   std::uint32_t samples = 0;               ///< a pixel
   std::vector<Hit> hits;                   ///< pixel-major; a miss has no instance
   std::vector<std::uint8_t> left_to_rays;  ///< by pixel, row-major: 1 where procedural primitives may be seen
   Counts counts;
+
+  struct Triangle {
+    std::uint32_t instance, primitive;
+  };
+  /// The work of a tile: its triangles, in the order of instances, and the tests of samples among `counts.tested`.
+  struct Tile {
+    std::vector<Triangle> triangles;
+    std::uint64_t tested = 0;
+  };
+  std::vector<Tile> tiles;  ///< row-major, with raster.time: cycles; as large as those of PixelOrder
 
   /// Null where a ray has to be sent.
   const Hit* at(std::uint32_t pixel, std::uint32_t sample) const {

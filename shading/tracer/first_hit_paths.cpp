@@ -1,8 +1,22 @@
 // Paths that start at hits which a rasteriser found (shading/raster/first_hits.h).
+#include <utility>
+#include <vector>
+
 #include "shading/raster/first_hits.h"
 #include "shading/tracer/path_tracer-inl.h"
 
 namespace carousel::shading {
+
+namespace {
+
+/// The sample of a path, by its ordinal in the frame.
+void append_read(std::uint64_t ordinal, std::vector<DataRead>& reads) {
+  const std::uint64_t offset = ordinal * FirstHits::kSampleBytes;
+  if (reads.empty() || reads.back().offset + reads.back().bytes != offset) reads.push_back({offset, 0});
+  reads.back().bytes += FirstHits::kSampleBytes;
+}
+
+}  // namespace
 
 void PathTracer::shade_first(const RayResult& result, Worker& worker, RayBatch& out) {
   std::uint32_t children = 0;
@@ -25,6 +39,7 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
     worker.held.pop_back();
     paths_.release();
   }
+  std::vector<DataRead> reads;
   std::size_t made = 0;
   const std::size_t before = out.size();
   bool all_begun = false;
@@ -56,7 +71,7 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
     all_begun = paths_.begin(made);
     // A path that ends at its first hit has no ray; the engine would wait for one forever.
   } while (made > 0 && out.size() == before && out.size() < end);
-  return {out.size() - (end - max_rays), all_begun && paths_.none_held()};
+  return {out.size() - (end - max_rays), all_begun && paths_.none_held(), std::move(reads)};
 }
 
 }  // namespace carousel::shading

@@ -40,8 +40,11 @@ void ShadeTables::geometry_reads(const Hit& hit, const TrianglePoint& point, Sha
   facts.material.push_back({material * kMaterialBytes, kMaterialBytes});
   const std::uint32_t mesh = scene_.instances[hit.instance].mesh.value;
   if (hit.primitive < scene_.meshes[mesh].triangle_count())
-    for (const std::uint32_t vertex : point.vertices)
-      facts.vertices.push_back({mesh_at_[mesh] + std::uint64_t{vertex} * kVertexBytes, kVertexBytes});
+    for (const std::uint32_t vertex : point.vertices) facts.vertices.push_back(this->vertex(mesh, vertex));
+}
+
+DataRead ShadeTables::vertex(std::uint32_t mesh, std::uint32_t vertex) const {
+  return {mesh_at_[mesh] + std::uint64_t{vertex} * kVertexBytes, kVertexBytes};
 }
 
 void ShadeTables::lookup(const TrianglePoint& point, const scene::TextureUse& use, ShadeFacts& facts) const {

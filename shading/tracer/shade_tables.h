@@ -22,6 +22,9 @@ class ShadeTables {
   /// The same of an any-hit call.
   void opacity_reads(const Hit& hit, const TrianglePoint& point, ShadeFacts& facts) const;
 
+  /// Where a vertex of a mesh stands among all vertices.
+  DataRead vertex(std::uint32_t mesh, std::uint32_t vertex) const;
+
  private:
   void geometry_reads(const Hit& hit, const TrianglePoint& point, ShadeFacts& facts) const;
   void lookup(const TrianglePoint& point, const scene::TextureUse& use, ShadeFacts& facts) const;

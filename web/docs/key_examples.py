@@ -72,6 +72,7 @@ UNDER = {
     "testers.simt.": SIMT,
     "bvh.micromaps.": ["scene.builtin=foliage", "bvh.micromaps.states=four"],
     "memory.l1_": ["memory.l1_kib=16"],
+    "memory.translation.": ["memory.translation.page_bytes=65536"],
     "memory.dram.": ["memory.dram.preset=gddr6_14"],
     "prefetcher.": ["prefetcher.lines=2"],
     "shading.data_cache.": DATA_CACHE,

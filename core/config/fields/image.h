@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/config/fields/engine_kind.h"
 #include "core/config/fields/field.h"
 
 namespace carousel {
@@ -131,6 +132,25 @@ void describe(V& v, BuilderConfig& c) {
       "asks", c.asks,
       "The builder reads and writes lines of the memory, or asks the first L2 for them. What the builder leaves there "
       "the rays find. Lines that stay there written (memory.l2_write: back) go to the memory before the first ray.");
+}
+
+template <class V>
+void describe(V& v, RasterConfig& c) {
+  v.choice("time", c.time,
+           "With primary: raster, the pass takes no time and its samples are where shading needs them; or a unit reads "
+           "vertices and writes the samples through the first L2, before the first ray, and shading reads them.")
+      .only(EngineKind::kCycle, "simulated memory", RasterConfig::Time::kCycles);
+  v.field("triangles_per_cycle", c.triangles_per_cycle, IntRange{1, 64}, "triangles/cycle",
+          "The triangles whose edges are set up, to sort them into tiles and again in each tile.");
+  v.field("tiles_per_cycle", c.tiles_per_cycle, IntRange{1, 64}, "tiles/cycle",
+          "The tiles into whose lists triangles are sorted.");
+  v.field("samples_per_cycle", c.samples_per_cycle, IntRange{1, 4096}, "tests/cycle",
+          "The tests of a sample against the edges of a triangle.");
+  v.field("bytes_per_cycle", c.bytes_per_cycle, IntRange{1, 4096}, "bytes/cycle",
+          "The bytes that the unit reads and writes.");
+  v.field("requests", c.requests, IntRange{1, 65536}, "lines", "The lines that it can wait for at a time.");
+  v.field("latency_cycles", c.latency_cycles, IntRange{1, 1000}, "cycles",
+          "The cycles from the last triangle or test of a task to its result.");
 }
 
 template <class V>

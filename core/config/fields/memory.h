@@ -28,6 +28,9 @@ struct MemoryConfig {
   } path_state = ShadingData::kFree,
     film = ShadingData::kFree, sky_map = ShadingData::kFree, surfaces = ShadingData::kFree;
   std::int64_t l1_kib = 0, l1_ways = 8, l1_lines_per_cycle = 1, l1_mshrs = 0, l1_latency_cycles = 20;
+  struct Translation {
+    std::int64_t page_bytes = 0, entries = 64;
+  } translation;
   DramConfig dram;
 };
 
@@ -68,6 +71,16 @@ inline constexpr auto kEnumNames<MemoryConfig::ShadingData> = [] {
 }();
 
 namespace config {
+
+template <class V>
+void describe(V& v, MemoryConfig::Translation& c) {
+  v.field("page_bytes", c.page_bytes, IntRange{0, 1 << 30}, "bytes",
+          "The size of a page, a power of two from 4096. With 0 addresses are physical.");
+  v.field("entries", c.entries, IntRange{1, 65536}, "entries",
+          "The pages that the TLB of a shared cache holds. For another one its walker reads the levels of the page "
+          "table from the memory, one after another.")
+      .relax("memory_tlb", Better::kTwice, Relaxed{}, c.page_bytes > 0);
+}
 
 template <class V>
 void describe(V& v, MemoryConfig& c) {
@@ -151,6 +164,8 @@ void describe(V& v, MemoryConfig& c) {
       "shape_stay", c.shape_stay,
       "Shapes keep their places until others need them, or only while a test, or a packet whose shapes are fetched "
       "in advance, uses them.");
+  v.section("translation", c.translation,
+            "Pages of what the shared caches ask the memory for: shapes, and all other data.");
   v.section("dram", c.dram, "The memory behind the shared caches.");
 }
 

@@ -26,6 +26,7 @@ class MemoryRules {
     micromaps_fit();
     caches_have_whole_sets();
     master_copies_fit();
+    pages_are_whole();
     if (c.memory.dram.preset == DramConfig::Preset::kPipe) return;
     constexpr std::int64_t kTransaction = 32;  // bytes
     const auto whole = [&](const char* key, std::int64_t bytes) {
@@ -39,6 +40,17 @@ class MemoryRules {
   }
 
  private:
+  void pages_are_whole() {
+    const std::int64_t page = c.memory.translation.page_bytes;
+    constexpr std::int64_t kLeast = 4096;  // no line is longer
+    if (page != 0 && (page < kLeast || (page & (page - 1)) != 0))
+      breach_("memory.translation.page_bytes",
+              fmt::format("expected 0, or a power of two from {}, found {}", kLeast, page));
+    else if (page != 0 && page % c.memory.line_bytes != 0)
+      breach_("memory.translation.page_bytes",
+              fmt::format("expected whole lines of {} bytes, found {}", c.memory.line_bytes, page));
+  }
+
   // A quantised node holds boxes of its children and references, and is decoded as a whole.
   void quantised_nodes_fit() {
     if (!is_quantised(c.bvh.storage)) return;

@@ -204,7 +204,8 @@ class BuilderMachine {
     if (!use.l2) return use.memory.lines == use.lines_read && use.memory.lines_written == use.lines_written;
     const CacheCounts& l2 = *use.l2;
     return l2.lines == use.lines_read && l2.hits + l2.merged + l2.misses == l2.lines &&
-           l2.written + l2.kept == use.lines_written && l2.misses + l2.write_fetches == use.memory.lines &&
+           l2.written + l2.kept == use.lines_written &&
+           l2.misses + l2.write_fetches + l2.walk_reads == use.memory.lines &&
            l2.written + l2.written_back + l2.drained == use.memory.lines_written;
   }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
+#include <vector>
 
 #include "core/types/workload.h"
 #include "ringbus/cycle/shading/open_rays.h"

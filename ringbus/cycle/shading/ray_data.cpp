@@ -4,24 +4,17 @@
 #include <array>
 #include <utility>
 
+#include "ringbus/cycle/shading/programs/data_places.h"
 #include "ringbus/cycle/shading/programs/data_lines.h"
-#include "ringbus/results/memory_request.h"
 
 namespace carousel::ringbus::cycle {
 
 namespace {
 
-// Places in the simulated memory, beyond shapes and spilled entries.
-constexpr std::uint64_t kRecords = std::uint64_t{1} << 50, kStates = std::uint64_t{1} << 51,
-                        kFilm = std::uint64_t{1} << 52, kSky = kFilm + (std::uint64_t{1} << 51);
-/// The tables that workers read, by ShadeData.
-constexpr std::array<std::uint64_t, kShadeData> kTables{
-    kSky + (std::uint64_t{1} << 48), kSky + (std::uint64_t{1} << 49), kSky + (std::uint64_t{1} << 50),
-    kSky + (std::uint64_t{3} << 49)};
 constexpr std::array<std::uint64_t RayDataBytes::*, kShadeData> kTableBytes{
     &RayDataBytes::materials_read, &RayDataBytes::vertices_read, &RayDataBytes::texels_read, &RayDataBytes::pages_read};
 constexpr std::uint32_t kPixelBytes = 16;  // four floats
-static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky && kTables.back() < kMemoryEnd);
+static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky);
 
 MemoryConfig of_shared_cache(MemoryConfig memory) {
   memory.l1_kib = 0;
@@ -137,7 +130,7 @@ void RayData::read(ShadeData what, const DataRead& data, const ProgramRead& by, 
 std::size_t RayData::read_lines(ShadeData what, std::vector<DataRead> data, std::uint32_t index, Cycle now) {
   if (what != ShadeData::kPages) by_line(data, line_bytes_);
   for (const DataRead& read : data) {
-    const ShapeSpan span{kTables[static_cast<std::size_t>(what)] + read.offset, read.bytes};
+    const ShapeSpan span{table_of(what) + read.offset, read.bytes};
     port_of(span).request(span, index, now);
     bytes_.*kTableBytes[static_cast<std::size_t>(what)] += span.bytes;
   }

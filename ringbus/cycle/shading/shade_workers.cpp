@@ -5,6 +5,12 @@
 
 namespace carousel::ringbus::cycle {
 
+namespace {
+
+constexpr std::uint32_t kNoPlace = ~0u;
+
+}  // namespace
+
 ShadeWorkers::ShadeWorkers(const ShadingSettings& settings, const std::vector<SidePorts>& clients, Workload& workload,
                            CameraRays& camera, ShadingRecorder& recorder)
     : clients_(clients),
@@ -87,10 +93,27 @@ bool ShadeWorkers::start_job(std::uint32_t place, Cycle now) {
     job.rays = job.vector.rays.size();
   } else if (job.rays = camera_.take(job.made); job.rays == 0) {
     return false;
+  } else {
+    job.reads = read_first_hits(place, now);
   }
-  begin(place, now);
+  if (job.reads == 0) begin(place, now);
   set_rays(place, job.rays);
   return true;
+}
+
+/// Reads the samples at which the last paths have begun; returns how many reads there are.
+std::size_t ShadeWorkers::read_first_hits(std::uint32_t place, Cycle now) {
+  const std::vector<DataRead> reads = camera_.take_first_hits();
+  for (const DataRead& read : reads)
+    memory_->read(ShadeData::kFirstHits, read, {.vector = place, .to = ProgramRead::To::kCameraRays}, now);
+  return reads.size();
+}
+
+void ShadeWorkers::answer(const ProgramRead& read, Cycle now) {
+  if (read.to != ProgramRead::To::kCameraRays) return cores_->answer(read, now);
+  if (read.vector == kNoPlace || --jobs_[read.vector].reads > 0) return;
+  jobs_[read.vector].began = now;
+  begin(read.vector, now);
 }
 
 /// The job of this place begins: its end is known, or that of its programs will be.

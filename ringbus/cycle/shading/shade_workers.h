@@ -78,9 +78,10 @@ class ShadeWorkers {
   }
   /// Where programs read; before the first step.
   void read_through(ProgramMemory& memory) {
+    memory_ = &memory;
     if (cores_) cores_->read_through(memory);
   }
-  void answer(const ProgramRead& read, Cycle now) { cores_->answer(read, now); }
+  void answer(const ProgramRead& read, Cycle now);
 
  private:
   /// Any-hit calls of a resource.
@@ -124,6 +125,7 @@ class ShadeWorkers {
   std::deque<Call> calls_;
   std::vector<SideWire> answer_wires_;  // by resource
   std::unique_ptr<ShadeCores> cores_;   // where workers run programs
+  ProgramMemory* memory_ = nullptr;     // where data of rays is in memory
   std::vector<Job> jobs_;               // by place
   std::priority_queue<JobEnd, std::vector<JobEnd>, std::greater<>> ends_;
   std::vector<std::uint32_t> idle_;  // places, the next one last

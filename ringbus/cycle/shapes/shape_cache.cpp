@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "ringbus/cycle/memory/memory_agent.h"
+#include "ringbus/results/memory_request.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -32,7 +33,10 @@ ShapeCache::ShapeCache(const MemoryConfig& config, std::vector<OwnCache> clients
       tags_(config),
       banks_(config, statistics_),
       pending_(static_cast<std::uint64_t>(config.strip_ahead)),
-      to_memory_(to_memory, MemoryAgent::request_latency(config), config.l2_banks == 1 && !writes_back_),
+      to_memory_(to_memory, MemoryAgent::request_latency(config),
+                 config.l2_banks == 1 && !writes_back_ && config.translation.page_bytes == 0),
+      pages_(config.translation.page_bytes, config.translation.entries),
+      lines_per_cycle_(static_cast<std::uint64_t>(config.l2_lines_per_cycle * config.l2_banks)),
       answers_(config, own_caches_, clients_, statistics_) {}
 
 MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
@@ -47,6 +51,7 @@ MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
   out.l2_write = MemoryConfig::Write::kThrough;
   out.l2_ray_ways = 0;
   out.l2_answer_bytes_per_cycle = 0;
+  out.translation.page_bytes = 0;
   return out;
 }
 
@@ -77,7 +82,13 @@ Cycle ShapeCache::next() const {
 void ShapeCache::run(Cycle end) {
   for (next_ = next(); next_ < end;) {
     const Cycle now = next_;
-    while (from_memory_.next() <= now) fill(from_memory_.take(), now);
+    while (from_memory_.next() <= now) {
+      const std::uint64_t line = from_memory_.take();
+      if (line * line_bytes_ >= kPageTables)
+        take_entry(now);
+      else
+        fill(line, now);
+    }
     next_ = from_memory_.next();
     const std::uint32_t own_caches = static_cast<std::uint32_t>(own_caches_.size());
     for (std::uint32_t c = 0; c < own_caches; ++c) {
@@ -155,7 +166,7 @@ void ShapeCache::fetch_ahead(const FetchRequest& request, Cycle now) {
       ++ahead_.dropped;
     } else {
       missing_.wait(line, kNobody);
-      to_memory_.add(leaves, line);
+      ask_memory(leaves, line);
       ++bank.on_their_way;
       ++ahead_.fetched;
     }
@@ -170,7 +181,7 @@ bool ShapeCache::writes_whole(const FetchRequest& request, std::uint64_t i) cons
 /// The line goes on to memory. `whole`: the L2 behind this cache is told that all of it is written.
 void ShapeCache::write_through(std::uint64_t line, bool whole, Cycle now) {
   tags_.touch(line);
-  to_memory_.add(banks_.take_port(banks_.of(line), now), kWriteLine | line | (whole ? kWholeLine : 0));
+  ask_memory(banks_.take_port(banks_.of(line), now), kWriteLine | line | (whole ? kWholeLine : 0));
   ++statistics_.written;
 }
 
@@ -210,7 +221,7 @@ bool ShapeCache::read(CacheBank& bank, const LineLookUp& one, Cycle now) {
   const Cycle end = banks_.take_port(bank, now);
   if (one.request != kNobody) pending_.looked_up(one.request, end);
   if (missing_.wait(one.line, one.request)) {
-    to_memory_.add(end, one.line);
+    ask_memory(end, one.line);
     ++bank.on_their_way;
     ++statistics_.misses;
     statistics_.past_end_misses += one.request == kNobody;
@@ -231,7 +242,7 @@ bool ShapeCache::write(CacheBank& bank, const LineLookUp& one, Cycle now) {
   if (!banks_.can_fetch(bank) && !missing_.has(one.line)) return false;
   const Cycle looked_up = banks_.take_port(bank, now);
   if (missing_.wait(one.line, kWriter)) {
-    to_memory_.add(looked_up, one.line);
+    ask_memory(looked_up, one.line);
     ++bank.on_their_way;
     ++statistics_.write_fetches;
   }
@@ -244,7 +255,7 @@ bool ShapeCache::write(CacheBank& bank, const LineLookUp& one, Cycle now) {
 void ShapeCache::insert(std::uint64_t line, Cycle now) {
   const LineCache::Replaced replaced = tags_.insert(line);
   for (std::uint64_t written = replaced.written; written != 0; written &= written - 1) {
-    to_memory_.add(now, kWriteLine | (replaced.first_part + static_cast<std::uint64_t>(std::countr_zero(written))));
+    ask_memory(now, kWriteLine | (replaced.first_part + static_cast<std::uint64_t>(std::countr_zero(written))));
     ++statistics_.written_back;
   }
 }
@@ -272,6 +283,37 @@ void ShapeCache::line_there(std::uint32_t index, std::uint64_t line, Cycle at) {
   const PendingRequests::Request& request = pending_[index];
   answers_.add({request.ready, request.client, request.tag, request.line, request.lines, request.push});
   pending_.end(index);
+}
+
+// ---- pages
+
+/// The request goes to the memory when it leaves, and the page of its line is known.
+void ShapeCache::ask_memory(Cycle leaves, std::uint64_t request) {
+  if (!pages_.on()) return to_memory_.add(leaves, request);
+  using Found = Translator<Leaving>::Found;
+  ++statistics_.pages;
+  const Found found = pages_.look_up((request & ~(kWriteLine | kWholeLine)) * line_bytes_, {leaves, request});
+  if (found == Found::kHere) return to_memory_.add(leaves, request);
+  ++statistics_.page_misses;
+  if (found == Found::kWalks) read_entry(leaves);
+}
+
+/// The walker reads the next level for its page.
+void ShapeCache::read_entry(Cycle now) {
+  if (pages_.begins()) ++statistics_.walks;
+  ++statistics_.walk_reads;
+  to_memory_.add(now, (kPageTables + pages_.entry()) / line_bytes_);
+}
+
+void ShapeCache::take_entry(Cycle now) {
+  if (const std::optional<std::vector<Leaving>> waited = pages_.take())
+    for (std::uint64_t i = 0; i < waited->size(); ++i) {
+      const Leaving& line = (*waited)[i];
+      const Cycle leaves = std::max(line.at, now + i / lines_per_cycle_);
+      statistics_.page_waits += leaves - line.at;
+      to_memory_.add(leaves, line.request);
+    }
+  if (pages_.walks()) read_entry(now);
 }
 
 std::string ShapeCache::describe() const {

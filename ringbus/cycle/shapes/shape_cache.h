@@ -7,6 +7,7 @@
 
 #include "core/config/fields/memory.h"
 #include "core/statistics/cache_counts.h"
+#include "ringbus/cycle/memory/translator.h"
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/cycle/shapes/cache/cache_answers.h"
 #include "ringbus/cycle/shapes/cache/cache_banks.h"
@@ -34,6 +35,10 @@ namespace carousel::ringbus::cycle {
 ///
 /// A part may ask it to fetch lines ahead. These are looked up as others are, and nobody gets them. One for which its
 /// bank has no miss register is dropped, and never makes others wait for a register.
+///
+/// With `memory.translation` a line that goes to the memory, or is asked for there, needs its page: this is looked up
+/// in a TLB when the line would leave. Without it the line waits for a walker (Translator), which reads its entries
+/// from the memory. Lines that have waited leave then, as many a cycle as the ports look up.
 ///
 /// With `memory.l2_sector_bytes` "line" here means a sector (see fetched_bytes()), but for replacement.
 class ShapeCache final : public Agent {
@@ -94,6 +99,15 @@ class ShapeCache final : public Agent {
   void fill(std::uint64_t line, Cycle now);
   void insert(std::uint64_t line, Cycle now);
   void line_there(std::uint32_t index, std::uint64_t line, Cycle at);
+  void ask_memory(Cycle leaves, std::uint64_t request);
+  void read_entry(Cycle now);
+  void take_entry(Cycle now);
+
+  /// A request to the memory, and the time at which it would leave.
+  struct Leaving {
+    Cycle at = 0;
+    std::uint64_t request = 0;
+  };
 
   std::uint64_t line_bytes_;  // of a line of the messages
   bool writes_back_;
@@ -108,6 +122,8 @@ class ShapeCache final : public Agent {
   PendingRequests pending_;
   MissingLines missing_;  // with pending requests
   MemoryRequests to_memory_;
+  Translator<Leaving> pages_;
+  std::uint64_t lines_per_cycle_;  // that its ports look up
   CacheAnswers answers_;
   Cycle next_ = 0;  // next(), at the end of the last run()
 };

@@ -55,10 +55,11 @@ void read_energy(const SimulatedMachine& machine, EnergyEvents& events) {
   }
   read_links(machine, events.link_bytes);
   read_messages(machine, distributor, events.row_bytes);
-  events.l2_lines = events.asked_ahead = events.l1_lines = 0;
+  events.l2_lines = events.asked_ahead = events.l1_lines = events.l2_pages = 0;
   for (const auto& cache : machine.memory().caches()) {
     events.l2_lines += cache->statistics().lines;
     events.asked_ahead += cache->ahead().asked;
+    events.l2_pages += cache->statistics().pages + cache->statistics().walks;
   }
   for (const auto& cache : machine.memory().own_caches()) events.l1_lines += cache->statistics().lines;
   events.parts = machine.parts().counts();

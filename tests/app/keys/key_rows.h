@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/costs/cost_table.h"
+#include "tests/app/keys/memory_key_rows.h"
 #include "tests/app/keys/network_key_rows.h"
 #include "tests/app/keys/tester_key_rows.h"
 
@@ -12,9 +13,6 @@ namespace carousel {
 /// All shading takes a cycle.
 inline const std::vector<std::string> kShortShaders{"programs.shaders.NAME.program=['load a, 1']",
                                                     "shading.program.default=NAME", "shading.workers=1"};
-
-inline const std::vector<std::string> kSmallDataCache{"shading.program.default=built_in", "shading.workers=1",
-                                                      "shading.data_cache.bytes=1024"};
 
 /// One row, or several, for every key.
 inline std::vector<KeyRow> key_rows() {
@@ -256,15 +254,6 @@ inline std::vector<KeyRow> key_rows() {
        kLayers,
        {"programs.shaders.NAME.program=['load a, 1']", "shading.program.default=NAME", "testers.any_hit=shader"},
        {"built_in", "constant"}},
-      {"shading.data_cache.bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"1024"}},
-      {"shading.data_cache.line_bytes", kTerrain, kSmallDataCache, {"256"}},
-      {"shading.data_cache.ways", kTerrain, kSmallDataCache, {"1"}},
-      {"shading.data_cache.latency_cycles", kTerrain, kSmallDataCache, {"400"}},
-      {"shading.translation.page_bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"4096"}},
-      {"shading.translation.entries",
-       kTerrain,
-       {"shading.program.default=built_in", "shading.workers=1", "shading.translation.page_bytes=4096"},
-       {"1"}},
       {"shading.registers", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"256"}},
       {"shading.instruction_cache.bytes", kTerrain, {"shading.program.default=built_in", "shading.workers=1"}, {"256"}},
       {"shading.instruction_cache.line_bytes",
@@ -364,7 +353,7 @@ inline std::vector<KeyRow> key_rows() {
       {"workload.traffic.reply_bytes", kTraffic, {kStopsRing}, {"64"}},
       {"workload.traffic.serve_cycles", kTraffic, {kStopsRing, "workload.traffic.reply_bytes=32"}, {"9"}},
   };
-  for (const std::vector<KeyRow>& more : {network_key_rows(), tester_key_rows()})
+  for (const std::vector<KeyRow>& more : {memory_key_rows(), network_key_rows(), tester_key_rows()})
     rows.insert(rows.end(), more.begin(), more.end());
   for (const CostRow& row : kCostTable)
     rows.push_back(

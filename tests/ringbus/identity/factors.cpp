@@ -190,6 +190,7 @@ std::vector<Factor> memory_and_shading() {
       {"memory.l2_banks", {"1", "2"}, timed},
       {"memory.l1_kib", {"0", "1"}, timed},
       {"memory.l2_mshrs", {"0", "1"}, timed},
+      {"memory.translation.page_bytes", {"0", "4096"}, timed},
       {"prefetcher.lines", {"0", "2"}, timed},
       {"memory.l2_sector_bytes", {"auto", "32"}, timed},
       {"memory.l2_write", all<MemoryConfig::Write>(), timed},

@@ -3,6 +3,7 @@ import heapq
 
 from .clock import Channel, SideWire, ceil_div, way_back, way_there
 REQUEST = 16  # bytes
+PAGE_TABLES = (1 << 53) - (1 << 48)
 
 
 def piece_of(config):
@@ -123,10 +124,18 @@ class Cache:
         self.complete = []  # requests that wait for their answer to leave
         self.leaving = []   # requests to memory, each with the cycle in which it leaves
         self.prefetcher = None
+        self.page = m.get("translation", {}).get("page_bytes", 0)
+        self.levels = -(-(48 - self.page.bit_length() + 1) // 9)
+        self.pages, self.entries = [], m.get("translation", {}).get("entries", 0)  # in the TLB, that used last at the end
+        self.wanted, self.level = {}, 0  # pages that are not there, in order: what waits for them
 
     def step(self, now):
         while self.from_memory.ready(now):
-            self.fill(self.from_memory.take(), now)
+            piece = self.from_memory.take()
+            if piece * self.piece >= PAGE_TABLES:
+                self.page_read(now)
+            else:
+                self.fill(piece, now)
         for cache in self.own:
             while cache.to_memory.ready(now):
                 piece, write = cache.to_memory.take()
@@ -245,6 +254,35 @@ class Cache:
             self.leave(now, (written, "whole"))
 
     def leave(self, at, what):
+        """What leaves for the memory needs its page."""
+        if not self.page:
+            return self.send(at, what)
+        page = what[0] * self.piece // self.page
+        if page in self.pages:
+            self.pages.remove(page)
+            self.pages.append(page)
+            return self.send(at, what)
+        self.wanted.setdefault(page, []).append((at, what))
+        if len(self.wanted) == 1 and len(self.wanted[page]) == 1:
+            self.read_level(at)
+
+    def read_level(self, at):
+        entry = next(iter(self.wanted)) >> 9 * (self.levels - 1 - self.level)
+        self.send(at, ((PAGE_TABLES + (self.level << 44) + 8 * entry) // self.piece, False))
+
+    def page_read(self, now):
+        self.level += 1
+        if self.level == self.levels:
+            self.level = 0
+            page = next(iter(self.wanted))
+            for i, (at, what) in enumerate(self.wanted.pop(page)):
+                self.send(max(at, now + i // (self.lines_a_cycle * len(self.banks))), what)
+            del self.pages[:max(0, len(self.pages) + 1 - self.entries)]
+            self.pages.append(page)
+        if self.wanted:
+            self.read_level(now)
+
+    def send(self, at, what):
         self.leaving.append((at, what))
         self.clock.wake(at)
 
@@ -278,7 +316,7 @@ def own_caches(config, clock, ports):
     if m.get("l1_kib"):
         nearest = dict(m, l2_kib=m["l1_kib"], ways=m["l1_ways"], l2_lines_per_cycle=m["l1_lines_per_cycle"],
                        l2_mshrs=m["l1_mshrs"], l2_latency_cycles=m["l1_latency_cycles"], l2_banks=1, l2_write="through", l2_ray_ways=0, l2_answer_bytes_per_cycle=0,
-                       dram_latency_cycles=m["l2_latency_cycles"])
+                       dram_latency_cycles=m["l2_latency_cycles"], translation={})
         own = [Cache({"memory": nearest}, clock, [port]) for port in ports]
     return own
 

@@ -151,9 +151,11 @@ class DataPath:
         return bool(self.events) and self.events[0][0] <= now
 
     def program_read(self, what, offset, size, by, now):
-        sent = max(now, self.free)
-        self.free = sent + 1
-        self.at(sent, self.look_up_page, ((self.TABLES.index(what) << 40) + offset, what, offset, by))
+        self.at(self.take_port(now), self.look_up_page, ((self.TABLES.index(what) << 40) + offset, what, offset, by))
+
+    def take_port(self, now):
+        self.free = max(now, self.free) + 1
+        return self.free - 1
 
     def step(self, now):
         while self.due(now):
@@ -213,8 +215,8 @@ class DataPath:
         page, reads = self.walks.pop(0)
         del self.tlb[:max(0, len(self.tlb) + 1 - self.entries)]
         self.tlb.append(page)
-        for read in reads:
-            self.look_up_line(read, now)
+        for read in reads:  # one a cycle, by the port of TLB and cache
+            self.at(self.take_port(now), self.look_up_line, read)
         if self.walks:
             self.read_level(now)
 

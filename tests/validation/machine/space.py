@@ -243,7 +243,16 @@ def draw(seed, index):
     draw_rings_of_rings(random.Random(seed * 1000003 + index + 2), config)
     draw_levels(random.Random(seed * 1000003 + index + 3), config)
     draw_stacks(random.Random(seed * 1000003 + index + 4), config)
+    draw_pages(random.Random(seed * 1000003 + index + 5), config)
     return config
+
+
+def draw_pages(r, config):
+    """Pages of what the shared caches ask the memory for, and stacks of few registers."""
+    if r.random() < 0.3:
+        config["memory"]["translation"] = {"page_bytes": r.choice([4096, 4096, 65536]), "entries": r.choice([1, 2, 8])}
+    if config["topology"]["shape"] == "independent":
+        config["testers"]["stack_entries"] = r.choice([0, 1, 1, 2, 3])
 
 
 def draw_stacks(r, config):

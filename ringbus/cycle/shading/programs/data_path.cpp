@@ -1,15 +1,13 @@
 #include "ringbus/cycle/shading/programs/data_path.h"
 
 #include <algorithm>
-#include <bit>
-#include <utility>
+#include <optional>
 
 namespace carousel::ringbus::cycle {
 
 namespace {
 
-constexpr int kTableBits = 40, kAddressBits = 48, kLevelBits = 9, kLevelTableBits = 44;
-constexpr std::uint32_t kEntryBytes = 8;
+constexpr int kTableBits = 40;
 
 }  // namespace
 
@@ -19,23 +17,24 @@ DataPath::DataPath(const DataCacheConfig& cache, const TranslationConfig& pages,
       worker_(worker),
       line_bytes_(memory.line_bytes()),
       ways_(static_cast<std::size_t>(cache.ways)),
-      entries_(static_cast<std::size_t>(pages.entries)),
-      latency_(cache.bytes > 0 ? static_cast<Cycle>(cache.latency_cycles) : 0) {
+      latency_(cache.bytes > 0 ? static_cast<Cycle>(cache.latency_cycles) : 0),
+      pages_(pages.page_bytes, pages.entries) {
   if (cache.bytes > 0) {
     if (cache.line_bytes) line_bytes_ = static_cast<std::uint64_t>(*cache.line_bytes);
     sets_.resize(static_cast<std::size_t>(cache.bytes) / (line_bytes_ * ways_));
   }
-  if (pages.page_bytes > 0) {
-    page_bits_ = std::countr_zero(static_cast<std::uint64_t>(pages.page_bytes));
-    levels_ = static_cast<std::uint32_t>((kAddressBits - page_bits_ + kLevelBits - 1) / kLevelBits);
-  }
 }
 
 void DataPath::read(ShadeData what, const DataRead& data, const ProgramRead& by, Cycle now) {
-  const Cycle sent = std::max(now, port_free_);
-  port_free_ = sent + 1;
   const std::uint64_t address = (static_cast<std::uint64_t>(what) << kTableBits) + data.offset;
-  due(sent, What::kPage, begin({what, data.offset, address, by}));
+  due(take_port(now), What::kPage, begin({what, data.offset, address, by}));
+}
+
+/// The next cycle in which the port of TLB and cache is free.
+Cycle DataPath::take_port(Cycle now) {
+  const Cycle at = std::max(now, port_free_);
+  port_free_ = at + 1;
+  return at;
 }
 
 std::uint32_t DataPath::begin(const Line& line) {
@@ -50,23 +49,20 @@ std::uint32_t DataPath::begin(const Line& line) {
 }
 
 void DataPath::look_up_page(std::uint32_t line, Cycle now) {
-  if (levels_ == 0) return look_up_line(line, now);
-  const std::uint64_t page = lines_[line].address >> page_bits_;
+  if (!pages_.on()) return look_up_line(line, now);
+  using Found = Translator<std::uint32_t>::Found;
   ++counts_.pages;
-  if (use(tlb_, page)) return look_up_line(line, now);
+  const Found found = pages_.look_up(lines_[line].address, line);
+  if (found == Found::kHere) return look_up_line(line, now);
   ++counts_.page_misses;
-  const auto walk = std::ranges::find(walks_, page, &Walk::page);
-  if (walk != walks_.end()) return walk->lines.push_back(line);
-  walks_.push_back({page, {line}});
-  if (walks_.size() == 1) read_level(now);
+  if (found == Found::kWalks) read_entry(now);
 }
 
 /// The walker reads the next level for its page.
-void DataPath::read_level(Cycle now) {
-  if (level_ == 0) ++counts_.walks;
-  const std::uint64_t entry = walks_.front().page >> (kLevelBits * static_cast<int>(levels_ - 1 - level_));
-  const std::uint64_t offset = (std::uint64_t{level_} << kLevelTableBits) + entry * kEntryBytes;
-  memory_.read(ShadeData::kPages, {offset, kEntryBytes}, {.worker = worker_, .to = ProgramRead::To::kWalker}, now);
+void DataPath::read_entry(Cycle now) {
+  if (pages_.begins()) ++counts_.walks;
+  memory_.read(ShadeData::kPages, {pages_.entry(), Translator<std::uint32_t>::kEntryBytes},
+               {.worker = worker_, .to = ProgramRead::To::kWalker}, now);
   ++counts_.walk_reads;
 }
 
@@ -105,13 +101,9 @@ void DataPath::take(const ProgramRead& read, Cycle now) {
     coming_.erase(read.address);
     return;
   }
-  if (++level_ < levels_) return read_level(now);
-  level_ = 0;
-  const Walk done = std::move(walks_.front());
-  walks_.pop_front();
-  put(tlb_, entries_, done.page);
-  for (const std::uint32_t line : done.lines) look_up_line(line, now);
-  if (!walks_.empty()) read_level(now);
+  if (const std::optional<std::vector<std::uint32_t>> waited = pages_.take())
+    for (const std::uint32_t line : *waited) due(take_port(now), What::kLine, line);
+  if (pages_.walks()) read_entry(now);
 }
 
 bool DataPath::use(Names& names, std::uint64_t name) {

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <functional>
 #include <map>
 #include <queue>
@@ -10,6 +9,7 @@
 
 #include "core/config/fields/shading.h"
 #include "core/statistics/shading_counts.h"
+#include "ringbus/cycle/memory/translator.h"
 #include "ringbus/cycle/shading/programs/program_memory.h"
 #include "ringbus/time/clock.h"
 
@@ -18,10 +18,8 @@ namespace carousel::ringbus::cycle {
 /// The way of a shader worker's reads to memory: its TLB (`shading.translation`) and its data cache
 /// (`shading.data_cache`), of which either may be missing.
 ///
-/// - The worker sends a line a cycle, and its page is looked up in that cycle. Without it the line waits for the
-/// walker.
-///   The walker serves one page at a time, in the order of the first line that asked for each. It reads the levels of
-///   the page table one after another, each of 512 entries, and puts the page in place of that used least recently.
+/// - The worker sends a line a cycle, and its page is looked up in that cycle. Without it the line waits for the walker
+///   (Translator). Lines that have waited go on one a cycle, by the same port.
 /// - The line is then in the cache or not; either is known `latency_cycles` later. A line that was there is the answer.
 ///   Another one is asked for then, and put in place of that of its set that was used least recently when it comes. A
 ///   line that is under way is not asked for again; it is the answer when it has come, and that is known.
@@ -47,6 +45,8 @@ class DataPath final : public ProgramMemory {
         free_.push_back(event.line);
       } else if (event.what == What::kPage) {
         look_up_page(event.line, now);
+      } else if (event.what == What::kLine) {
+        look_up_line(event.line, now);
       } else {
         ask(event.line, now);
       }
@@ -62,7 +62,7 @@ class DataPath final : public ProgramMemory {
     ProgramRead by;
     Cycle known = 0;  // if the cache has it
   };
-  enum class What : std::uint8_t { kPage, kAsk, kAnswer };
+  enum class What : std::uint8_t { kPage, kLine, kAsk, kAnswer };
   struct Event {
     Cycle at;
     std::uint64_t order;
@@ -70,19 +70,16 @@ class DataPath final : public ProgramMemory {
     std::uint32_t line;
     bool operator>(const Event& o) const { return at != o.at ? at > o.at : order > o.order; }
   };
-  /// What a set of the cache or the TLB holds, that used last at the end.
+  /// What a set of the cache holds, that used last at the end.
   using Names = std::vector<std::uint64_t>;
-  struct Walk {
-    std::uint64_t page;
-    std::vector<std::uint32_t> lines;  // that wait for it
-  };
 
   std::uint32_t begin(const Line& line);
   void due(Cycle at, What what, std::uint32_t line) { events_.push({at, ++order_, what, line}); }
   void look_up_page(std::uint32_t line, Cycle now);
   void look_up_line(std::uint32_t line, Cycle now);
   void ask(std::uint32_t line, Cycle now);
-  void read_level(Cycle now);
+  void read_entry(Cycle now);
+  Cycle take_port(Cycle now);
   static bool use(Names& names, std::uint64_t name);
   static void put(Names& names, std::size_t most, std::uint64_t name);
   Names& set_of(std::uint64_t address) { return sets_[address / line_bytes_ % sets_.size()]; }
@@ -90,17 +87,13 @@ class DataPath final : public ProgramMemory {
   ProgramMemory& memory_;
   std::uint32_t worker_;
   std::uint64_t line_bytes_;
-  std::size_t ways_, entries_;
+  std::size_t ways_;
   Cycle latency_;
-  int page_bits_ = 0;
-  std::uint32_t levels_ = 0;  // of the page table; 0: addresses are physical
-  std::vector<Names> sets_;   // of the cache; none: there is no cache
-  Names tlb_;
+  Translator<std::uint32_t> pages_;  // of lines
+  std::vector<Names> sets_;          // of the cache; none: there is no cache
   std::vector<Line> lines_;
   std::vector<std::uint32_t> free_;                             // unused places in lines_
   std::map<std::uint64_t, std::vector<std::uint32_t>> coming_;  // lines that wait, by address
-  std::deque<Walk> walks_;                                      // of the first one the walker reads level_
-  std::uint32_t level_ = 0;
   std::priority_queue<Event, std::vector<Event>, std::greater<>> events_;
   std::uint64_t order_ = 0;
   Cycle port_free_ = 0;

@@ -121,7 +121,8 @@ TEST(DataPath, AWalkReadsALevelAfterAnother) {
 // A page has 64 lines. The walker goes for one page at a time, and for each once.
 TEST(DataPath, WalksWaitForEachOther) {
   Path path({}, {.page_bytes = 4096, .entries = 2});
-  EXPECT_EQ(path.run({{0, 0}, {0, 64}, {0, 1}, {0, 65}}), (Ends{500, 900, 500, 900}));
+  EXPECT_EQ(path.run({{0, 0}, {0, 64}, {0, 1}, {0, 65}}), (Ends{500, 900, 501, 901}))
+      << "what has waited enters one a cycle";
   EXPECT_EQ(path.counts(), (ShadeDataCounts{.pages = 4, .page_misses = 4, .walks = 2, .walk_reads = 8}));
 }
 

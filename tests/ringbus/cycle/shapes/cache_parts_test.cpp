@@ -7,6 +7,7 @@
 #include "core/config/load/load.h"
 #include "ringbus/cycle/memory/memory_agent.h"
 #include "ringbus/cycle/shapes/shape_cache.h"
+#include "ringbus/results/memory_request.h"
 #include "tests/ringbus/time/loose_channel.h"
 
 namespace carousel::ringbus::cycle {
@@ -70,6 +71,16 @@ struct Bench {
   LooseChannel<FetchAnswer> answers;
   LooseChannel<std::uint64_t> down, up;
   ShapeCache cache{config, {{&requests, &answers}}, down, up};
+  /// The entries of a page come, each ten cycles after it was asked for; returns the cycle of the last.
+  Cycle walk(Cycle asked_at, std::uint64_t page, int levels) {
+    for (int level = 0; level < levels; ++level) {
+      const std::uint64_t at = kPageTables + (std::uint64_t(level) << 44) + 8 * (page >> 9 * (levels - 1 - level));
+      EXPECT_THAT(asked.back(), testing::Pair(asked_at, at / 64)) << level;
+      come(asked_at += 10, at / 64);
+      run(asked_at + 5);
+    }
+    return asked_at;
+  }
   Events answered, asked;
   CacheCounts before;
 };
@@ -261,6 +272,57 @@ TEST(OwnCache, AsksTheL2ForLines) {
   EXPECT_EQ(down.next(), kNever);
   EXPECT_EQ(own.statistics().hits, 3u);
   EXPECT_EQ(l2.statistics().misses, 3u);
+}
+
+// A page has 64 lines, and 2^48 bytes have four levels of 512 pages. Lines that have waited leave one a cycle, as they
+// are looked up.
+TEST(L2Pages, LinesWaitForAWalkOfTheLevels) {
+  Bench one("translation: {page_bytes: 4096, entries: 1}");
+  one.ask(1000, 64 * 700 + 5, 3);
+  one.run(1005);
+  const Cycle end = one.walk(1001, 700, 4);
+  EXPECT_EQ(end, 1041);
+  EXPECT_THAT(std::vector(one.asked.end() - 3, one.asked.end()),
+              ElementsAre(at(1041, 64 * 700 + 5), at(1042, 64 * 700 + 6), at(1043, 64 * 700 + 7)));
+  EXPECT_EQ(one.counts().walk_reads, 4u);
+  EXPECT_EQ(one.counts().page_waits, 3u * 40);
+  one.ask(1100, 64 * 700 + 8);
+  one.run(1110);
+  EXPECT_THAT(one.asked.back(), at(1101, 64 * 700 + 8)) << "the page is there";
+  one.ask(1200, 0);
+  one.run(1210);
+  one.walk(1201, 0, 4);
+  one.ask(1300, 64 * 700 + 9);
+  one.run(1310);
+  one.walk(1301, 700, 4);
+  const CacheCounts counts = one.counts();
+  EXPECT_EQ(counts.walks, 3u) << "there is room for one page";
+  EXPECT_EQ(counts.pages, 6u);
+  EXPECT_EQ(counts.page_misses, 5u);
+  EXPECT_EQ(counts.misses, 6u);
+}
+
+TEST(L2Pages, AWalkIsMadeForAPageAtATime) {
+  Bench one("translation: {page_bytes: 2097152, entries: 4}");
+  const std::uint64_t lines = 2097152 / 64;
+  one.ask(1000, 3 * lines);
+  one.ask(1000, 9 * lines);
+  one.ask(1000, 9 * lines + 1);
+  one.run(1005);
+  EXPECT_EQ(one.walk(1001, 3, 3), 1031);
+  EXPECT_EQ(one.walk(1031, 9, 3), 1061);
+  EXPECT_THAT(one.asked.back(), at(1062, 9 * lines + 1));
+  EXPECT_EQ(one.counts().walks, 2u);
+}
+
+// A line that is written through waits as well, and one of another page does not.
+TEST(L2Pages, WritesNeedTheirPages) {
+  Bench one("translation: {page_bytes: 4096, entries: 2}");
+  one.write(1000, 1, 64);
+  one.run(1005);
+  EXPECT_EQ(one.walk(1001, 0, 4), 1041);
+  EXPECT_THAT(one.asked.back(), at(1041, kWriteLine | 1));
+  EXPECT_EQ(one.counts().pages, 1u);
 }
 
 }  // namespace
