@@ -110,7 +110,11 @@ std::int64_t stepping_rays(const OwnSections& own) {
 double stack_kib(const Config& c, std::int64_t resource) {
   const OwnSections own = own_sections(c, resource);
   const SimtConfig& simt = own.testers.simt;
-  if (simt.warp == 0) return static_cast<double>(own.rays.slots_per_resource) * kStackBytes / kKiB;
+  if (simt.warp == 0) {
+    const std::int64_t entries = own.testers.stack_entries;
+    return static_cast<double>(own.rays.slots_per_resource) *
+           (entries > 0 ? static_cast<double>(entries) * kEntryBytes : kStackBytes) / kKiB;
+  }
   const double votes =
       simt.prefetch == SimtConfig::Prefetch::kTreelet ? static_cast<double>(stepping_rays(own)) * kVoteBytes : 0;
   return register_kib(c, resource) + (static_cast<double>(simt.warp * simt.warps) * kNodeBytes + votes) / kKiB;

@@ -31,6 +31,7 @@ constexpr std::array kCharges{
     Charge{"ray_records", "rays have no master copies in memory", "memory.ray_records", "resource", "master"},
     Charge{"products", "products of surfaces' effects take no time", "shading.products_per_cycle", "0", "8"},
     Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
+    Charge{"stack_room", "stacks of rays have room for all of their entries", "testers.stack_entries", "0", "8"},
     Charge{"translation", "addresses of the memory are physical", "memory.translation.page_bytes", "0", "2097152"},
     Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "",
            "topology.shape=independent topology.trace=stacks"},

@@ -212,6 +212,8 @@ constexpr Row kRows[] = {
     {"testers.simt.prefetch", kWarps},
     {"testers.simt.prefetch_rays", kPrefetchesTreelets},
     {"testers.simt.vote_cycles", kPrefetchesTreelets},
+    {"testers.stack_entries", kCycle},
+    {"testers.stack_entries", kOwnStacks},
     {"testers.contexts", kCycle},
     {"testers.contexts", kPackets},
     {"testers.window", kCycle},

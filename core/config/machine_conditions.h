@@ -312,6 +312,11 @@ inline constexpr Condition kVectors{[](const C& c, const S&) { return any_tester
 
 inline constexpr Condition kWarps{[](const C& c, const S&) { return has_warps(c); },
                                   "rays go by themselves, not in warps"};
+inline constexpr Condition kOwnStacks{
+    [](const C& c, const S&) {
+      return !exchanges_packets(c) && any_testers(c, [](const TestersConfig& one) { return one.simt.warp == 0; });
+    },
+    "no rays that go by themselves have stacks"};
 inline constexpr Condition kTranslates{[](const C& c, const S&) { return c.memory.translation.page_bytes > 0; },
                                        "addresses are physical"};
 inline constexpr Condition kRepacks{[](const C& c, const S&) {

@@ -6,7 +6,8 @@ namespace carousel {
 
 /// Traffic of the stacks of a resource's rays (`topology.shape: independent`).
 struct StackTraffic {
-  std::uint64_t pushed_bytes = 0, popped_bytes = 0, peak_bytes = 0, ray_peak_bytes = 0;
+  std::uint64_t pushed_bytes = 0, popped_bytes = 0, peak_bytes = 0, ray_peak_bytes = 0, spilled_bytes = 0,
+                refilled_bytes = 0;
 
   static constexpr auto counters() {
     using C = StackTraffic;
@@ -15,6 +16,8 @@ struct StackTraffic {
         Counter{"popped_bytes", &C::popped_bytes, "bytes", "bytes popped; rays left the rest when they ended early"},
         Counter{"peak_bytes", &C::peak_bytes, "bytes", "most bytes of all rays of the resource at one time"},
         Counter{"ray_peak_bytes", &C::ray_peak_bytes, "bytes", "most bytes of one ray at one time"},
+        Counter{"spilled_bytes", &C::spilled_bytes, "bytes", "bytes of older entries written to memory"},
+        Counter{"refilled_bytes", &C::refilled_bytes, "bytes", "bytes of them read back"},
     };
   }
   friend bool operator==(const StackTraffic&, const StackTraffic&) = default;

@@ -13,7 +13,7 @@ engine's, and some machine must then disagree.
 
 Left out, as in the page: any-hit calls, cull planes, bundles, bounding spheres, leaves held in nodes, faults,
 idle_resources_shade, distribute: random, point_to_point, raster, traffic; of graphs, ways that are not the shortest,
-and caches, memories and shading beside packets; warps. Scenes this small do not feel a TLB of several entries: the
+and caches, memories and shading beside packets; warps; short stacks over drawn links. Scenes this small do not feel a TLB of several entries: the
 tests DataPath.* count its misses.
 """
 import argparse
@@ -61,6 +61,7 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "shading.data_cache.latency_cycles": 1, "shading.data_cache.bytes": {64: 0, 128: 256},
         "shading.translation.page_bytes": {4096: 65536, 65536: 0},
         "memory.translation.page_bytes": {4096: 65536, 65536: 0}, "memory.translation.entries": {1: 8, 8: 1, 2: 1},
+        "testers.stack_entries": {1: 2, 2: 1, 3: 0},
         "shading.cycles_per_any_hit": 1, "shading.lanes": 1, "shading.sort": {"shader": "none"}, "shading.sort_rays_per_cycle": 1,
         "memory.fetch": {"multicast": "resource"}, "memory.ray_records": {"master": "resource"},
         "memory.shape_stay": {"while_used": "until_replaced"}, "memory.path_state": {"memory": "free"}, "memory.film": {"memory": "free"},

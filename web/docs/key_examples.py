@@ -211,6 +211,7 @@ KEYS = {
     "testers.dispatch": ["engine.plugins=[build/libown_dispatch.so]", "testers.window=4", "testers.dispatch=fullest_first"],
     "testers.any_hit": ["scene.builtin=foliage"],
     "testers.bundle_blocks": BUNDLES + ["bundles.order=parallel"],
+    "testers.stack_entries": ["topology.shape=independent"],
     "testers.simt.warp": ["topology.shape=independent"],
     "testers.simt.repack_rays_per_cycle": SIMT + ["testers.simt.compaction=repack"],
     "testers.simt.prefetch": SIMT_PREFETCH[:-1],

@@ -95,6 +95,7 @@ struct TestersConfig {
     friend bool operator==(const Distributor&, const Distributor&) = default;
   } distributor;
   SimtConfig simt;
+  std::int64_t stack_entries = 0;  ///< of a ray by itself; 0: all stay
   std::int64_t contexts = 16;
   std::int64_t window = 1;
   Dispatch dispatch = Dispatch::kReady;
@@ -231,6 +232,11 @@ void describe(V& v, TestersConfig& c) {
   v.section("simd", c.simd, "The lanes of the units.");
   v.section("distributor", c.distributor, "Testers behind a distributor, with topology.form: distributor.");
   v.section("simt", c.simt, "Warps of rays, with topology.shape: independent.");
+  v.field("stack_entries", c.stack_entries, IntRange{0, 256}, "nodes",
+          "With topology.shape: independent and without warps, the nodes that a resource's registers hold of a ray's "
+          "stack. Older ones are spilled to memory and read back, half of this number at a time. With 0 all have room.")
+      .only(EngineKind::kCycle, "clock for spilled stacks")
+      .relax("stack_registers", Better::kTwice, Relaxed{.times = kStorageTimes}, c.stack_entries > 0);
   v.field("contexts", c.contexts, IntRange{1, 64}, "packets", "The number of packets that a resource tests at once.")
       .relax("contexts", Better::kTwice);
   v.field("window", c.window, IntRange{1, 64}, "packets",

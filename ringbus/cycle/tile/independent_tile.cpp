@@ -14,6 +14,7 @@ IndependentTile::IndependentTile(ResourceId id, Machine& machine, const ShapeMem
     : UnlinkedResource(id, machine, memory, settings, ports),
       question_wire_(settings.link, control_latency(settings.link)),
       ports_(ports),
+      registers_(id, settings.testers.stack_entries, store_.slots(), shapes_.port()),
       completed_port_(settings.link, ports),
       help_(settings.link, ports),
       threads_(store_.slots(), Thread{{}, RayWalk(transforms_, settings.resource.collections.order), {}, {}}),
@@ -38,6 +39,7 @@ void IndependentTile::step(Cycle now) {
       keep_running(slot, now);
     }
   shapes_.take_answers(now);
+  take_entries(now);
   serve(now);
   do {
     while (!tests_.empty() && tests_.top().done <= now) {
@@ -45,6 +47,7 @@ void IndependentTile::step(Cycle now) {
       tests_.pop();
       trace_.note(now, StepKind::kTestedRay, slot, 1);
       shapes_.release(slot, now);
+      registers_.spill(slot, threads_[slot].walk, now);
       if (HitBatch& calls = threads_[slot].calls; !calls.empty()) {
         AnyHitQuestion question{{slot}, std::exchange(calls, {})};
         const Cycle arrival = question_wire_.send(question.bytes(), now);  // before the question is moved away
@@ -65,7 +68,7 @@ void IndependentTile::step(Cycle now) {
 TileState IndependentTile::classify() const {
   if (help_.shading()) return TileState::kShading;
   if (!tests_.empty()) return TileState::kTesting;
-  return shapes_.fetches() == 0 ? TileState::kIdle : TileState::kMemory;
+  return shapes_.fetches() == 0 && registers_.idle() ? TileState::kIdle : TileState::kMemory;
 }
 
 void IndependentTile::take_new_rays(Cycle now) {
@@ -90,9 +93,11 @@ void IndependentTile::take_new_rays(Cycle now) {
 
 void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
   Thread& thread = threads_[slot];
-  stack_held_ -= thread.walk.stack_bytes().held;
-  const std::optional<accel::NodeKey> next = thread.walk.next(store_.record(slot));
-  stack_held_ += thread.walk.stack_bytes().held;
+  stack_.held -= thread.walk.stack_bytes().held;
+  const std::optional<accel::NodeKey> next = thread.walk.next(store_.record(slot), registers_.beyond(slot));
+  registers_.shrink(slot, thread.walk);
+  stack_.held += thread.walk.stack_bytes().held;
+  if (!next && registers_.beyond(slot) > 0) return registers_.refill(slot, thread.walk, now);
   if (!next) {
     complete(slot);
     return;
@@ -104,6 +109,16 @@ void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
   const ShapeNeed need(memory_.strip(*next), enters ? memory_.transform(next->instance) : ShapeSpan{},
                        memory_.gaussians(*next));
   if (shapes_.take(slot, need, now)) test(slot, now);
+}
+
+/// Rays whose stack entries have come go on with the turn that they began.
+void IndependentTile::take_entries(Cycle now) {
+  for (const std::uint32_t slot : shapes_.spill_answers()) {
+    registers_.take(slot);
+    spent(slot, RayStage::kShapes, now);
+    keep_running(slot, now);
+  }
+  shapes_.spill_answers().clear();
 }
 
 /// Tests the rays that waited for data and need wait no longer.
@@ -123,7 +138,7 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
     return;
   }
   Thread& thread = threads_[slot];
-  stack_held_ -= thread.walk.stack_bytes().held;
+  stack_.held -= thread.walk.stack_bytes().held;
   std::vector<AnyHitCall> calls;
   const IntersectionCounts counts =
       thread.walk.test(accel_, thread.strip,
@@ -131,9 +146,9 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
                         ports_.questions != nullptr ? &calls : nullptr});
   for (const AnyHitCall& call : calls) thread.calls.push_back(AnyHitHold::completed_at(call));
   const std::uint64_t held = thread.walk.stack_bytes().held;
-  stack_held_ += held;
-  stack_.peak_bytes = std::max(stack_.peak_bytes, stack_held_);
-  stack_.ray_peak_bytes = std::max(stack_.ray_peak_bytes, held);
+  stack_.held += held;
+  stack_.traffic.peak_bytes = std::max(stack_.traffic.peak_bytes, stack_.held);
+  stack_.traffic.ray_peak_bytes = std::max(stack_.traffic.ray_peak_bytes, held);
   const Cycle done = tester_.ray(tester_.read(now, 1), counts);
   tests_.push({done, next_turn_++, slot});
   spent(slot, RayStage::kShapes, now);
@@ -154,8 +169,8 @@ void IndependentTile::test(std::uint32_t slot, Cycle now) {
 
 void IndependentTile::complete(std::uint32_t slot) {
   const RayWalk::StackBytes& bytes = threads_[slot].walk.stack_bytes();
-  stack_.pushed_bytes += bytes.pushed;
-  stack_.popped_bytes += bytes.popped;
+  stack_.traffic.pushed_bytes += bytes.pushed;
+  stack_.traffic.popped_bytes += bytes.popped;
   --active_;
   store_.finish(slot, completed_);
   transforms_.forget(slot);
@@ -184,7 +199,7 @@ void IndependentTile::note_done(Cycle now) {
 ResourceAgent::Work IndependentTile::work() const {
   Work out{tester_.busy_units(), tester_.busy_reads(), 0};
   read_energy(tester_, sink_.statistics(), shapes_.counts(), out);
-  out.energy.stack_bytes = stack_.pushed_bytes + stack_.popped_bytes;
+  out.energy.stack_bytes = stack_.traffic.pushed_bytes + stack_.traffic.popped_bytes;
   return out;
 }
 
@@ -193,7 +208,9 @@ TileResult IndependentTile::result() const {
   ledger_.fill_in(t);
   t.shapes = shapes_.counts();
   t.strip_reads = shapes_.reads();
-  t.stack = stack_;
+  t.stack = stack_.traffic;
+  t.stack.spilled_bytes = registers_.spilled_bytes();
+  t.stack.refilled_bytes = registers_.refilled_bytes();
   t.transformed_rays = transforms_.bytes();
   return t;
 }

@@ -12,6 +12,7 @@
 #include "ringbus/cycle/tile/stages/tile_settings.h"
 #include "ringbus/cycle/tile/unlinked_resource.h"
 #include "ringbus/cycle/tile/walk/ray_walk.h"
+#include "ringbus/cycle/tile/walk/stack_registers.h"
 #include "ringbus/resource/visit/any_hit_hold.h"
 
 namespace carousel::ringbus::cycle {
@@ -23,7 +24,7 @@ namespace carousel::ringbus::cycle {
 /// for its transform), is tested against it, and gives it back. A ray that is ready takes the units at once, or behind
 /// the rays that were ready before it, so that the tests of other rays hide its wait for memory. Picking rays and
 /// moving stack entries costs no cycles: the baseline is given its best, and the bytes that its stacks move are
-/// reported apart.
+/// reported apart. With `testers.stack_entries` older entries are in memory, and a ray waits for those that it reads.
 class IndependentTile final : public UnlinkedResource {
  public:
   /// Keeps references to the machine and its memory.
@@ -57,6 +58,7 @@ class IndependentTile final : public UnlinkedResource {
   void keep_running(std::uint32_t slot, Cycle now);
   void test(std::uint32_t slot, Cycle now);
   void serve(Cycle now);
+  void take_entries(Cycle now);
   void test_held_back(Cycle now);
   void complete(std::uint32_t slot);
   bool follows(std::uint32_t slot) const {
@@ -73,6 +75,7 @@ class IndependentTile final : public UnlinkedResource {
   // The users of the shape buffer are slots.
   SideWire question_wire_;
   SidePorts ports_;
+  StackRegisters registers_;
   CompletedPort completed_port_;
   ShadeHelp help_;
 
@@ -82,8 +85,10 @@ class IndependentTile final : public UnlinkedResource {
   std::uint64_t next_turn_ = 0;
   HitBatch completed_;
   std::vector<std::uint32_t> freed_slots_;
-  std::uint64_t stack_held_ = 0;
-  StackTraffic stack_;
+  struct {
+    StackTraffic traffic;
+    std::uint64_t held = 0;
+  } stack_;
   ResourceTimes* times_;   // null: rays' time is not accounted for
   Cycle waits_since_ = 0;  // the followed ray
 };

@@ -116,6 +116,7 @@ inline std::vector<KeyRow> tester_key_rows() {
        kTerrain,
        {"topology.shape=independent", "testers.simt.warp=8", "testers.simt.warps=2"},
        {"1"}},
+      {"testers.stack_entries", kTerrain, {"topology.shape=independent"}, {"1"}},
       {"testers.simt.compaction",
        kTerrain,
        {"topology.shape=independent", "testers.simt.warp=8", "testers.simt.warps=2"}},

@@ -73,5 +73,46 @@ TEST_F(Spill, APacketWaitsForItsEntries) {
   EXPECT_GE(cycles(far), cycles(with(65536, 3000)) + 31);
 }
 
+// With testers.stack_entries the older entries of stacks of rays that go by themselves are in memory. A request has 16
+// bytes, and those that it writes.
+TEST_F(Spill, ShortStacksCostTheirBytesAndTheTime) {
+  const auto sum = [](const Json& report, const char* key) {
+    std::uint64_t out = 0;
+    for (const Json& resource : report["resources"]) out += resource["stack"][key].get<std::uint64_t>();
+    return out;
+  };
+  for (const std::string& shape :
+       {std::string("topology.shape=independent"),
+        std::string("topology={shape: graph, trace: stacks, nodes: [{name: r, count: 2}], links: []}")}) {
+    SCOPED_TRACE(shape);
+    const std::vector<std::string> machine{shape, "collections={}", "memory.shape_buffer_kib=4"};
+    const auto with = [&](const std::string& more) {
+      std::vector<std::string> sets = machine;
+      sets.push_back(more);
+      return run(65536, sets);
+    };
+    const Json ample = with("testers.stack_entries=0"), tight = with("testers.stack_entries=2"),
+               wide = with("testers.stack_entries=256");
+    EXPECT_EQ(sum(ample, "spilled_bytes"), 0u);
+    EXPECT_EQ(cycles(wide), cycles(ample));
+    const std::uint64_t spilled = sum(tight, "spilled_bytes"), refilled = sum(tight, "refilled_bytes");
+    EXPECT_GT(refilled, 0u);
+    EXPECT_GE(spilled, refilled);
+    EXPECT_EQ(sum(tight, "pushed_bytes"), sum(ample, "pushed_bytes"));
+    const Json row = ledger_row(tight, "shape requests");
+    EXPECT_EQ(row["bytes"].get<std::uint64_t>(), 16 * row["messages"].get<std::uint64_t>() + spilled);
+    EXPECT_GT(tight["memory"]["dram_lines_written"], 0);
+    EXPECT_GT(cycles(tight), cycles(ample));
+    EXPECT_GT(sum(with("testers.stack_entries=1"), "spilled_bytes"), spilled);
+    EXPECT_EQ(tight["digest"], ample["digest"]);
+    EXPECT_EQ(tight["tests"], ample["tests"]);
+    EXPECT_EQ(cycles(run(65536, {shape, "collections={}", "memory.shape_buffer_kib=4", "testers.stack_entries=2",
+                                 "engine.threads=2"})),
+              cycles(tight));
+  }
+  const Json ring = run(65536, {"testers.stack_entries=2"});
+  EXPECT_EQ(ring["ignored_keys"], (std::vector<std::string>{"testers.stack_entries"}));
+}
+
 }  // namespace
 }  // namespace carousel::spill_test

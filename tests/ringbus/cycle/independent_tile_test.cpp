@@ -37,10 +37,16 @@ class LoneTile {
     for (Cycle now; (now = std::min(tile_.next(), fetch_.next())) != kNever;) {
       while (fetch_.next() <= now) {
         const Cycle at = fetch_.next();
-        // Requests of one cycle follow one another on the wire, and the ray waits for the last.
-        memory_wait += at == last_fetch_ + 1 ? 1 : 34 / 2 + answer;
+        // Requests of one cycle follow one another on the wire, and the ray waits for the last that is no write.
+        const FetchRequest asked = fetch_.take();
+        const bool follows = at == last_fetch_ + 1;
+        memory_wait += (follows ? 1 : 0) + (follows && !after_write_ ? 0 : asked.written > 0 ? 0 : 34 / 2 + answer);
+        if (asked.written > 0) memory_wait -= follows ? 1 : 0;
         last_fetch_ = at;
-        fetched_.send(at + answer, {fetch_.take().tag});
+        after_write_ = asked.written > 0;
+        written += asked.written;
+        if (after_write_) continue;
+        fetched_.send(at + answer, {asked.tag});
         ++fetches;
       }
       tile_.run(now + 1);
@@ -56,7 +62,7 @@ class LoneTile {
   TileResult result() const { return tile_.result(); }
   ResourceStatistics statistics() const { return tile_.statistics(); }
 
-  std::uint64_t fetches = 0, completed = 0;
+  std::uint64_t fetches = 0, completed = 0, written = 0;
   Cycle memory_wait = 0;  ///< cycles that a lone ray waits for its strips and transforms
   Cycle last_completed = 0;
 
@@ -70,6 +76,7 @@ class LoneTile {
   LooseChannel<FetchRequest> fetch_;
   LooseChannel<FetchAnswer> fetched_;
   Cycle last_fetch_ = 0;
+  bool after_write_ = false;
   IndependentTile tile_;
 };
 
@@ -114,6 +121,36 @@ TEST(IndependentTile, OneRayTakesTheSumOfItsLatencies) {
     transforms += tile.units[UnitKind::kTransform].busy;
   }
   EXPECT_GT(transforms, 0u);
+}
+
+// A ray waits for the entries that it reads back as for shapes. What it writes is before its next request on the wire.
+TEST(IndependentTile, AShortStackCostsTheWaitForItsEntries) {
+  TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 50, 1);
+  std::uint64_t spilled = 0, slower = 0;
+  for (std::size_t ray = 0; ray < 50; ++ray) {
+    Config config = independent_machine();
+    config.topology.link.bytes_per_cycle = 256;  // a message takes a cycle
+    LoneTile ample(scene, config);
+    config.testers.stack_entries = 1;
+    LoneTile tight(scene, config);
+    for (LoneTile* lone : {&ample, &tight}) {
+      lone->load(ray, 1);
+      lone->run(100);
+    }
+    const TileResult tile = tight.result();
+    const Cycle tests = 7 * tile.units[UnitKind::kBox].busy + 11 * tile.units[UnitKind::kTriangle].busy +
+                        13 * tile.units[UnitKind::kTransform].busy;
+    EXPECT_EQ(tight.last_completed, tight.memory_wait + tests + 1 + 5) << ray;
+    EXPECT_EQ(in_state(tile, TileState::kMemory), tight.memory_wait) << ray;
+    EXPECT_EQ(tight.written, tile.stack.spilled_bytes);
+    EXPECT_LE(tile.stack.refilled_bytes, tile.stack.spilled_bytes);
+    EXPECT_EQ(tile.stack.pushed_bytes, ample.result().stack.pushed_bytes);
+    EXPECT_EQ(ample.written, 0u);
+    spilled += tile.stack.refilled_bytes;
+    slower += tight.last_completed > ample.last_completed;
+  }
+  EXPECT_GT(spilled, 0u);
+  EXPECT_GT(slower, 0u);
 }
 
 // Every strip that a ray is tested against costs a read of its record, a cycle if the port reads one a cycle.

@@ -136,6 +136,7 @@ std::vector<Factor> traversal_and_units() {
       {"testers.triangle", {"1", "4"}, {"engine.kind=cycle"}},
       {"testers.simd.lanes", {"1", "8"}, {"engine.kind=cycle"}},
       {"testers.simd.map", all<TestersConfig::Simd::Map>(), {"engine.kind=cycle"}},
+      {"testers.stack_entries", {"0", "1"}, {"engine.kind=cycle", "topology.shape=independent"}},
       {"testers.contexts", {"1", "3"}, {"engine.kind=cycle"}},
       {"testers.own_rays", all<TestersConfig::OwnRays>()},
       {"testers.window", {"1", "3"}, {"engine.kind=cycle"}},

@@ -45,6 +45,7 @@ class ShapeBuffer:
         self.room = deque()  # users that wait for room
         self.queue = deque() # packets of the issue queue; the granted ones first
         self.ready = []      # users that waited and need wait no longer
+        self.came_back = []  # whose spilled entries have been read
 
     def take(self, user, need, now):
         user.need = [span for span in need if span[1] > 0]
@@ -144,8 +145,9 @@ class ShapeBuffer:
         given_up = False
         while self.port.answers.ready(now):
             entry = self.port.answers.take()
-            if not isinstance(entry, Entry):  # a spilled block of a packet in the issue queue
+            if not isinstance(entry, Entry):  # a spilled block of a packet in the issue queue, or entries of a stack
                 entry.spilled -= 1
+                self.came_back.append(entry)
                 continue
             entry.here = True
             if entry.places > places(entry.span):

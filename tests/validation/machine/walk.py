@@ -15,15 +15,26 @@ class Walk:
 
     def __init__(self, ray, root, nodes, transforms, order):
         self.order, self.ray, self.nodes, self.transforms = order, ray, nodes, transforms
-        self.stack = [(root, 0.0)]
+        self.stack, self.in_hand = [(root, 0.0)], True
         self.instance = 0xffffffff
 
-    def next(self):
-        while self.stack and not self.ray.done:
+    def next(self, beyond=0):
+        """The next strip, if it is not among the oldest `beyond` entries of the stack."""
+        if self.ray.done:
+            self.stack = []
+        while len(self.stack) > beyond:
             node, entry = self.stack.pop()
+            self.in_hand = False
             if entry <= self.ray.t:
                 return node
         return None
+
+    def waiting(self):
+        """The nodes on the stack, the oldest first, without the first child, which is not put there."""
+        return [node for node, _ in self.stack[:len(self.stack) - self.in_hand]]
+
+    def bytes(self, nodes):
+        return sum(4 if self.nodes[node].inner else 12 for node in nodes)
 
     def enters(self, node):
         return self.nodes[node].instance != self.instance
@@ -40,6 +51,7 @@ class Walk:
             counts.box = node.shapes
             for lane, entry in last_first(self.order, self.ray.meet_boxes(node, range(node.shapes))):
                 self.stack.append((node.children[lane], entry))
+                self.in_hand = True
         else:
             setattr(counts, "procedural" if node.procedural else "triangle", node.shapes)
             counts.refined = self.ray.meet_triangles(node, range(node.shapes))

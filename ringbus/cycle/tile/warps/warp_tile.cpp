@@ -245,6 +245,8 @@ TileResult WarpTile::result() const {
   t.shapes = shapes_.counts();
   t.strip_reads = shapes_.reads();
   t.stack = ended_.stack();
+  t.stack.spilled_bytes = registers_.spilled_bytes();
+  t.stack.refilled_bytes = registers_.refilled_bytes();
   t.transformed_rays = transforms_.bytes();
   WarpCounts& warps = t.warps.emplace(log_.counts());
   warps.lines_wanted = tests_.reads().wanted();

@@ -12,7 +12,7 @@
 #include "ringbus/cycle/tile/walk/ray_walk.h"
 #include "ringbus/cycle/tile/warps/ended_rays.h"
 #include "ringbus/cycle/tile/warps/lane_tests.h"
-#include "ringbus/cycle/tile/warps/stack_registers.h"
+#include "ringbus/cycle/tile/walk/stack_registers.h"
 #include "ringbus/cycle/tile/warps/treelet_prefetcher.h"
 #include "ringbus/cycle/tile/warps/warp_forming.h"
 #include "ringbus/cycle/tile/warps/warp_log.h"

@@ -15,10 +15,10 @@ namespace carousel::ringbus::cycle {
 /// they hold when they are empty, which it waits for.
 class StackRegisters {
  public:
-  /// Keeps a reference.
+  /// With 0 entries all have room. Keeps a reference.
   StackRegisters(ResourceId resource, std::int64_t entries, std::uint32_t slots, ShapePort& port)
       : base_((resource.value + std::uint64_t{1}) << 40),
-        entries_(static_cast<std::size_t>(entries)),
+        entries_(entries > 0 ? static_cast<std::size_t>(entries) : ~std::size_t{0}),
         port_(port),
         beyond_(slots, 0) {}
 
