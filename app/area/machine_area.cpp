@@ -136,6 +136,10 @@ double register_kib(const Config& c, std::int64_t resource) {
   return static_cast<double>(stepping_rays(own) * own.testers.simt.stack_entries) * kEntryBytes / kKiB;
 }
 
+double raster_kib(const Config& c) {
+  return static_cast<double>(c.raster.requests * c.memory.line_bytes) / kKiB;
+}
+
 double builder_kib(const Config& c) {
   return static_cast<double>(c.frames->builder.local_primitives * BuilderConfig::kRecordBytes +
                              c.frames->builder.requests * c.memory.line_bytes) /
@@ -221,6 +225,11 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   if (c.frames && c.frames->count > 1 && c.frames->update != FrameUpdate::kNone) {
     store(AreaPart::kBuilder, builder_kib(c));
     parts[AreaPart::kBuilder].mm2 += static_cast<double>(c.frames->builder.boxes_per_cycle) * cost(c, Cost::kBoxUnit);
+  }
+  if (c.primary == Primary::kRaster && c.raster.time == RasterConfig::Time::kCycles) {
+    store(AreaPart::kRaster, raster_kib(c));
+    parts[AreaPart::kRaster].mm2 += static_cast<double>(c.raster.triangles_per_cycle + c.raster.samples_per_cycle) *
+                                    cost(c, area_of(UnitKind::kTriangle));
   }
   out.mm2 = parts.mm2();
   return out;

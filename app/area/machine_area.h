@@ -17,6 +17,8 @@ double register_kib(const Config& config, std::int64_t resource);
 
 /// The store of the builder (`frames.builder`) in KiB: records of primitives, and the lines that it waits for.
 double builder_kib(const Config& config);
+/// That of the unit that rasterises first hits: lines on their way.
+double raster_kib(const Config& config);
 
 /// The machine with the most resources that is within area.budget_mm2. With `all`, shading.workers, where it is given,
 /// grows by the same factor, and so do size and banks of an L2 that all resources share. None if no number of resources

@@ -19,6 +19,7 @@
 #include "app/build_report/traffic_report.h"
 #include "app/energy/power_meter.h"
 #include "app/host/log.h"
+#include "app/raster/raster_unit.h"
 #include "app/run/bottleneck.h"
 #include "app/run/counting_workload.h"
 #include "app/run/effects_proof.h"

@@ -33,6 +33,8 @@ constexpr std::array kCharges{
     Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
     Charge{"stack_room", "stacks of rays have room for all of their entries", "testers.stack_entries", "0", "8"},
     Charge{"translation", "addresses of the memory are physical", "memory.translation.page_bytes", "0", "2097152"},
+    Charge{"raster", "first hits are rasterised in no time, and are where shading needs them", "raster.time", "free",
+           "cycles"},
     Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "",
            "topology.shape=independent topology.trace=stacks"},
     Charge{"waiting_hits", "nodes and hits that wait for a later round are moved in no time, and always find room", "",

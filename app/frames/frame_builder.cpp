@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "app/area/machine_area.h"
+#include "app/energy/unit_energy.h"
 #include "core/config/costs.h"
 #include "ringbus/cycle/builder/builder_unit.h"
 #include "ringbus/cycle/builder/builder_work.h"
@@ -71,26 +72,11 @@ std::uint64_t drop_all(std::vector<std::vector<std::uint64_t>>& cached) {
 }
 
 /// A box that is added to others costs what a test of one does: as many comparisons. Lines pass the builder's store,
-/// and each box is read there. An L2 is read or written for each line that the builder asks for or writes, for each
-/// that comes from the memory, and for each that it keeps and sends there later.
-std::optional<double> joules_of(const Config& config, const BuilderUse& use, std::uint64_t line_bytes) {
+/// and each box is read there.
+std::optional<double> joules_of(const Config& config, const BuilderUse& use) {
   if (config.energy.profile == CostProfile::kNone) return std::nullopt;
-  const Costs costs = costs_of(config);
-  const std::uint64_t moved = (use.memory.lines + use.memory.lines_written) * line_bytes,
-                      bytes = (use.lines_read + use.lines_written) * line_bytes;
-  const bool hbm = config.memory.dram.preset == DramConfig::Preset::kHbm2;
-  double pj = static_cast<double>(moved) * costs.of(hbm ? Cost::kHbm : Cost::kDram) +
-              static_cast<double>(use.boxes) * costs.of(energy_of(UnitKind::kBox)) +
-              static_cast<double>(bytes + use.boxes * BuilderConfig::kRecordBytes) / 8 *
-                  costs.sram_access_pj(builder_kib(config));
-  if (use.l2)
-    pj += static_cast<double>(bytes + (use.memory.lines + use.l2->written_back + use.l2->drained) * line_bytes) / 8 *
-          costs.sram_access_pj(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks));
-  if (use.dram)
-    for (const ringbus::DramUse::Channel& channel : use.dram->channels)
-      pj += static_cast<double>(channel.counts.row_misses + channel.counts.row_conflicts) *
-            costs.of(hbm ? Cost::kHbmActivation : Cost::kDramActivation);
-  return pj * 1e-12;
+  return unit_joules(costs_of(config), config.memory, use, builder_kib(config), use.boxes * BuilderConfig::kRecordBytes,
+                     use.boxes, UnitKind::kBox);
 }
 
 report::FrameUpdateCost cost_of(const Config& config, const BuilderUse& use) {
@@ -101,7 +87,7 @@ report::FrameUpdateCost cost_of(const Config& config, const BuilderUse& use) {
                               .bytes_read = use.memory.lines * line_bytes,
                               .bytes_written = use.memory.lines_written * line_bytes,
                               .top_bytes = use.top_lines * line_bytes,
-                              .joules = joules_of(config, use, line_bytes)};
+                              .joules = joules_of(config, use)};
   if (use.l2)
     out.l2 =
         report::FrameUpdateL2{use.lines_read, use.l2->hits, use.lines_written, use.l2->write_fetches, use.l2->drained};

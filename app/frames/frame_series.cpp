@@ -180,6 +180,7 @@ class FrameSeries {
 
   void fill(report::Frame& row, const report::Report& report) const {
     row.cycles = report.engine.cycles;
+    if (report.raster_unit) row.raster_cycles = report.raster_unit->cycles;
     row.rays = report.rays.completed;
     if (report.tests) {
       row.box_tests = report.tests->counts.box;
@@ -205,7 +206,7 @@ class FrameSeries {
   static void sum_cycles(report::Frames& frames) {
     frames.cycles = frames.builder_cycles = frames.builder_bytes = frames.limited_by_builder = frames.worn = 0;
     for (const report::Frame& row : frames.rows) {
-      *frames.cycles += row.cycles.value_or(0);
+      *frames.cycles += row.cycles.value_or(0) + row.raster_cycles.value_or(0);
       *frames.worn += row.rebuild_pays.value_or(false);
       if (!row.builder) continue;
       *frames.cycles += row.builder->cycles;

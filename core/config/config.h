@@ -79,6 +79,7 @@ struct Config {
   WorkloadConfig workload;
   std::map<std::string, std::vector<std::string>> vary;  ///< key path to values; for sweep
   Primary primary = Primary::kRays;
+  RasterConfig raster;
 };
 
 /// A central machine of test cells, each of which tests the rays of its places in ray memory.
@@ -130,6 +131,7 @@ void describe(V& v, Config& c) {
   v.choice("primary", c.primary,
            "The first surface that a pixel shows is found by camera rays, or by a rasteriser, which leaves the other "
            "rays to the machine and needs a pinhole.");
+  v.section("raster", c.raster, "The unit that rasterises first hits in the simulated machine.");
   v.section("faults", c.faults, "Faults that happen on request.");
   v.section("sampling", c.sampling, "A part of the frame that stands for all of it.");
   v.section("energy", c.energy, "The joules of an event. Every number may be given instead of the profile's.");

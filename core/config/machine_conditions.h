@@ -319,6 +319,10 @@ inline constexpr Condition kOwnStacks{
     "no rays that go by themselves have stacks"};
 inline constexpr Condition kTranslates{[](const C& c, const S&) { return c.memory.translation.page_bytes > 0; },
                                        "addresses are physical"};
+inline constexpr Condition kRaster{[](const C& c, const S&) { return c.primary == Primary::kRaster; },
+                                   "primary is rays"};
+inline constexpr Condition kRasterTime{
+    [](const C& c, const S&) { return c.raster.time == RasterConfig::Time::kCycles; }, "raster.time is free"};
 inline constexpr Condition kRepacks{[](const C& c, const S&) {
                                       return any_testers(c, [](const TestersConfig& one) {
                                         return one.simt.compaction == SimtConfig::Compaction::kRepack;

@@ -42,7 +42,8 @@ struct TransformedRayBytes {
 /// `path_state`, `film`, `sky_map`, `surfaces`, `shading.program`).
 struct RayDataBytes {
   std::uint64_t records_read = 0, records_written = 0, states_read = 0, states_written = 0, film_read = 0,
-                film_written = 0, sky_read = 0, materials_read = 0, vertices_read = 0, texels_read = 0, pages_read = 0;
+                film_written = 0, sky_read = 0, materials_read = 0, vertices_read = 0, texels_read = 0, pages_read = 0,
+                first_hits_read = 0;
 
   static constexpr auto counters() {
     using C = RayDataBytes;
@@ -60,6 +61,7 @@ struct RayDataBytes {
         Counter{"vertices_read", &C::vertices_read, "bytes", "vertices of triangles read likewise"},
         Counter{"texels_read", &C::texels_read, "bytes", "texels of textures read likewise"},
         Counter{"pages_read", &C::pages_read, "bytes", "entries of the page table read by walkers"},
+        Counter{"first_hits_read", &C::first_hits_read, "bytes", "rasterised samples read before they are shaded"},
     };
   }
   friend bool operator==(const RayDataBytes&, const RayDataBytes&) = default;

@@ -31,9 +31,9 @@ struct DataRead {
   friend auto operator<=>(const DataRead&, const DataRead&) = default;
 };
 
-/// The tables that shader workers read: those of the scene, and that of pages.
-enum class ShadeData : std::uint8_t { kMaterial, kVertices, kTexels, kPages };
-inline constexpr std::size_t kShadeData = 4;
+/// The tables that shader workers read: those of the scene, that of pages, and rasterised samples.
+enum class ShadeData : std::uint8_t { kMaterial, kVertices, kTexels, kPages, kFirstHits };
+inline constexpr std::size_t kShadeData = 5;
 
 /// A completed ray as a shader program sees it.
 struct ShadeFacts {

@@ -58,6 +58,8 @@ class Workload {
   struct Generated {
     std::size_t rays = 0;   ///< appended to `out`
     bool finished = false;  ///< no generate() call, by anyone, will ever append a ray again
+    /// What it has read of the list of rasterised samples, with raster.time: cycles.
+    std::vector<DataRead> first_hits{};
   };
 
   virtual ~Workload() = default;

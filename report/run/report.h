@@ -21,6 +21,7 @@
 #include "report/sections/rays.h"
 #include "report/sections/rays/heat.h"
 #include "report/sections/rays/nearest.h"
+#include "report/sections/rays/raster_unit.h"
 #include "report/sections/rays/ray_time.h"
 #include "report/sections/resource.h"
 #include "report/sections/sampled.h"
@@ -57,6 +58,7 @@ struct Report {
   std::optional<RayTime> ray_time;
   std::optional<Heat> heat;
   std::optional<RasterCounts> raster;
+  std::optional<RasterUnit> raster_unit;
   std::optional<Sampled> sampled;
   std::optional<Throughput> throughput;
   std::optional<Tests> tests;
@@ -117,6 +119,7 @@ void describe(V& v, const Report& r) {
             "faults.resource.kind: stop");
   v.section("heat", r.heat, "cost of the picture's pixels, of a run with --heat (cycle)");
   v.section("raster", r.raster, "raster pass that replaces camera rays; absent with primary: rays");
+  v.section("raster_unit", r.raster_unit, "time and bytes of that pass, with raster.time: cycles (cycle)");
   v.section(
       "sampled", r.sampled,
       "estimates for the whole frame, when sampling.fraction is less than 1; all other sections are about the part "

@@ -81,7 +81,9 @@ void ray_words(Words& w) {
             "triangles before the camera, and tiles that each of them touches")
       .item("N hits", "raster.hits")
       .item("N left to rays", "raster.left_to_rays")
-      .item("N", "host.raster_seconds");
+      .item("N", "host.raster_seconds")
+      .item("in N cycles before the rays", "raster_unit.cycles")
+      .item("in N cycles before the rays, longer than they take", "raster_unit.cycles");
   w.line("ranks")
       .item("N ranks", "ranks")
       .item("N messages", "rank_links[].messages")

@@ -175,6 +175,7 @@ enum class AreaPart : std::uint8_t {
   kWires,
   kShaders,
   kBuilder,
+  kRaster,
   kMemoryPorts
 };
 
@@ -198,6 +199,9 @@ inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
     {"shaders", "shaders", "shader workers (products/cycle)"},
     {"builder", "builder",
      "the unit that brings the structure to each frame: its box pipeline, its store and its lines on their way (KiB)"},
+    {"raster_unit", "raster unit",
+     "the unit that rasterises first hits: a triangle test for each triangle and sample of a cycle, and its lines on "
+     "their way (KiB)"},
     {"memory_ports", "memory ports",
      "ports of shared caches: wires for the lines that they answer in a cycle, over half of the side of the square of "
      "the resources that share one (mm)"},
@@ -227,7 +231,7 @@ struct AreaParts {
 
 template <class V>
 void describe(V& v, const AreaParts& r) {
-  constexpr auto kPorts = static_cast<std::size_t>(AreaPart::kMemoryPorts);  // older reports have none
+  constexpr auto kNewer = static_cast<std::size_t>(AreaPart::kRaster);  // older reports have none of these
   for (std::size_t i = 0; i < kAreaParts.size(); ++i)
     v.section_if(i < kNewer || r.of[i].mm2 > 0, kAreaParts[i].key, r.of[i], kAreaParts[i].meaning);
   Parts::for_each([&]<class P>(std::size_t i) { v.section(P::kSection, r.declared[i], P::kAreaMeaning); });

@@ -189,7 +189,9 @@ FirstHits rasterize_first_hits(const scene::Scene& scene, const Config& config, 
   const CameraRays rays(camera, config.camera, width, height);
   const Sampler sampler(static_cast<std::uint64_t>(config.image.seed), samples);
   const Screen screen(camera, rays, width, height);
-  return Rasterizer(scene, camera, rays, sampler, screen, samples, config.shading.camera_rays, any_hit).run(executor);
+  return Rasterizer(scene, camera, rays, sampler, screen, samples, config.shading.camera_rays, any_hit,
+                    config.raster.time == RasterConfig::Time::kCycles)
+      .run(executor);
 }
 
 }  // namespace carousel::shading

@@ -52,6 +52,7 @@ Workload::Generated PathTracer::generate_from_hits(WorkerId worker_id, std::size
     for (std::size_t i = 0; i < made; ++i) {
       const std::uint32_t index = worker.begun[i];
       const PixelSample at = begin_path(admitted.first + i, index);
+      if (!first_hits_->tiles.empty()) append_read(paths_.ordinal(admitted.first + i), reads);
       const PathState& path = pool_.state(index);
       const Ray ray = camera_.ray(at.x, at.y, sampler_.camera(path.pixel, path.sample));
       const RayTag tag{index, RayKind::kCamera, 0, 0, 0};

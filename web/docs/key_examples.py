@@ -73,6 +73,7 @@ UNDER = {
     "bvh.micromaps.": ["scene.builtin=foliage", "bvh.micromaps.states=four"],
     "memory.l1_": ["memory.l1_kib=16"],
     "memory.translation.": ["memory.translation.page_bytes=65536"],
+    "raster.": ["primary=raster", "raster.time=cycles"],
     "memory.dram.": ["memory.dram.preset=gddr6_14"],
     "prefetcher.": ["prefetcher.lines=2"],
     "shading.data_cache.": DATA_CACHE,

@@ -58,7 +58,7 @@ RUNS = {
     "shaders": (CORNELL + ["shading.program.default=built_in", "shading.instruction_cache.bytes=512",
                            "shading.data_cache.bytes=4096", "shading.translation.page_bytes=4096", "shading.lanes=4",
                            "shading.sort=shader"] + ENERGY, []),
-    "raster": (TERRAIN + ["primary=raster"], []),
+    "raster": (TERRAIN + ["primary=raster", "raster.time=cycles"] + ENERGY, []),
     "sampled": (["scene.builtin=terrain", "scene.triangles=400", "engine.kind=cycle", "image.width=48", "image.height=32",
                  "image.samples=1", "sampling.fraction=0.5"] + ENERGY, ["--audit"]),
     "prefetcher": (["scene.builtin=terrain", "scene.triangles=2000"] + CORNELL[1:] + ["prefetcher.lines=2"] + ENERGY, []),

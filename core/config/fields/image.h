@@ -80,6 +80,18 @@ inline constexpr auto kEnumNames<BuilderConfig::Asks> = [] {
   return names<BuilderConfig::Asks>({{kMemory, "memory"}, {kL2, "l2"}});
 }();
 
+/// The unit that rasterises first hits in the simulated machine (`primary: raster`).
+struct RasterConfig {
+  enum class Time : std::uint8_t { kFree, kCycles } time = Time::kFree;
+  std::int64_t triangles_per_cycle = 1, tiles_per_cycle = 1, samples_per_cycle = 16;
+  std::int64_t bytes_per_cycle = 64, requests = 64, latency_cycles = 16;
+};
+template <>
+inline constexpr auto kEnumNames<RasterConfig::Time> = [] {
+  using enum RasterConfig::Time;
+  return names<RasterConfig::Time>({{kFree, "free"}, {kCycles, "cycles"}});
+}();
+
 /// How the structure follows a scene that moves.
 enum class FrameUpdate : std::uint8_t { kRefit, kRebuild, kClusters, kNone };
 template <>

@@ -257,6 +257,8 @@ void check_parts(const Config& config, const Graph& graph, const DrawnParts& par
   refuse("memory.film", memory.film != Free::kFree, "free, found memory");
   refuse("memory.sky_map", memory.sky_map != Free::kFree && config.scene.sky && !config.scene.sky->file.empty(),
          "free, found memory");
+  refuse("raster.time", config.primary == Primary::kRaster && config.raster.time != RasterConfig::Time::kFree,
+         "free, found cycles");
   refuse("memory.surfaces", memory.surfaces != Free::kFree, "free, found memory");
   Parts::for_each([&]<class P>(std::size_t) {
     if (P::is_built(config.parts.of<P>()))

@@ -72,7 +72,7 @@ struct Frame {
   std::uint64_t frame = 0;
   double time = 0;
   std::string update{}, why{};
-  std::optional<std::uint64_t> cycles{};
+  std::optional<std::uint64_t> cycles{}, raster_cycles{};
   std::uint64_t rays = 0, box_tests = 0, primitive_tests = 0;
   std::optional<std::uint64_t> memory_bytes{};
   std::optional<double> joules{};
@@ -95,6 +95,7 @@ void describe(V& v, const Frame& r) {
           "how the structure came to be that of the frame: built before the run, refit, rebuild, clusters, or kept");
   v.field("why", r.why, "", "why it was rebuilt although frames.update is another; empty if it was not");
   v.field("cycles", r.cycles, "cycles", "time of its rays, without the update before them (cycle)");
+  v.field("raster_cycles", r.raster_cycles, "cycles", "time of the raster pass before them, with raster.time: cycles");
   v.field("rays", r.rays, "rays", "rays of the frame");
   v.field("box_tests", r.box_tests, "tests", "tests of a ray against a box");
   v.field("primitive_tests", r.primitive_tests, "tests", "tests of a ray against a primitive");
@@ -135,7 +136,7 @@ struct Frames {
 template <class V>
 void describe(V& v, const Frames& r) {
   v.field("count", r.count, "frames", "frames that were shown");
-  v.field("cycles", r.cycles, "cycles", "time of all of them, rays and updates (cycle)");
+  v.field("cycles", r.cycles, "cycles", "time of all of them, rays, updates and raster passes (cycle)");
   v.field("builder_cycles", r.builder_cycles, "cycles", "part of it that is the builder's (cycle)");
   v.field("builder_bytes", r.builder_bytes, "bytes", "bytes that the builder read and wrote (cycle)");
   v.field("rays", r.rays, "rays", "rays of all frames");

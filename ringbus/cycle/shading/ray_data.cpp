@@ -12,7 +12,8 @@ namespace carousel::ringbus::cycle {
 namespace {
 
 constexpr std::array<std::uint64_t RayDataBytes::*, kShadeData> kTableBytes{
-    &RayDataBytes::materials_read, &RayDataBytes::vertices_read, &RayDataBytes::texels_read, &RayDataBytes::pages_read};
+    &RayDataBytes::materials_read, &RayDataBytes::vertices_read, &RayDataBytes::texels_read, &RayDataBytes::pages_read,
+    &RayDataBytes::first_hits_read};
 constexpr std::uint32_t kPixelBytes = 16;  // four floats
 static_assert(kFilm + (std::uint64_t{1} << 32) * kPixelBytes < kSky);
 

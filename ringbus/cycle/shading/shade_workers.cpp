@@ -92,6 +92,7 @@ bool ShadeWorkers::start_job(std::uint32_t place, Cycle now) {
     for (const RayResult& ray : job.vector.rays) recorder_.begin_shading(ray, now);
     job.rays = job.vector.rays.size();
   } else if (job.rays = camera_.take(job.made); job.rays == 0) {
+    read_first_hits(kNoPlace, now);
     return false;
   } else {
     job.reads = read_first_hits(place, now);

@@ -26,7 +26,8 @@ namespace carousel::ringbus::cycle {
 ///
 /// A worker answers any-hit calls first, because their rays keep slots that could be free. Otherwise it takes the rays
 /// that have waited longest in its queue, as many as it has lanes. If no ray waits it makes camera rays. Where workers
-/// run programs a worker has a place for each vector that it holds, and the worker that holds fewest goes first.
+/// run programs a worker has a place for each vector that it holds, and the worker that holds fewest goes first. Paths
+/// that begin at rasterised samples wait for these at their place; paths that end there wait for nothing.
 /// Keeps references to all that it is given.
 class ShadeWorkers {
  public:
@@ -96,6 +97,7 @@ class ShadeWorkers {
     ShadeVector vector;
     std::optional<Call> call{};
     std::size_t rays = 0;
+    std::size_t reads = 0;  // of rasterised samples, for which camera rays wait
   };
   /// The end of a job. Of jobs that end at one time that of the first place goes first.
   struct JobEnd {
@@ -109,6 +111,7 @@ class ShadeWorkers {
   }
   bool start_job(std::uint32_t place, Cycle now);
   void begin(std::uint32_t place, Cycle now);
+  std::size_t read_first_hits(std::uint32_t place, Cycle now);
   void set_rays(std::uint32_t place, std::size_t rays);
   void order_idle();
   Job& end_job(JobEnd end);

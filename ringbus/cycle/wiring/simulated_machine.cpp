@@ -59,10 +59,15 @@ bool keeps_surfaces(const Config& config, const accel::Accel& accel) {
          config.workload.kind == WorkloadConfig::Kind::kRays && accel.gaussians == nullptr;
 }
 
+bool reads_first_hits(const Config& config) {
+  return config.primary == Primary::kRaster && config.raster.time == RasterConfig::Time::kCycles;
+}
+
 bool has_ray_data(const Config& config, const accel::Accel& accel) {
   const bool sky_map =
       config.workload.kind == WorkloadConfig::Kind::kRays && config.scene.sky && !config.scene.sky->file.empty();
-  return RayData::wanted(config.memory, sky_map) || keeps_surfaces(config, accel) || config.shading.program.any();
+  return RayData::wanted(config.memory, sky_map) || keeps_surfaces(config, accel) || config.shading.program.any() ||
+         reads_first_hits(config);
 }
 
 ShadingSettings shading_settings(const Config& config) {
