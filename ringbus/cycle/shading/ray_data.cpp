@@ -4,8 +4,8 @@
 #include <array>
 #include <utility>
 
-#include "ringbus/cycle/shading/programs/data_places.h"
 #include "ringbus/cycle/shading/programs/data_lines.h"
+#include "ringbus/cycle/shading/programs/data_places.h"
 
 namespace carousel::ringbus::cycle {
 

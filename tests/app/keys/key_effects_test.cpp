@@ -78,8 +78,9 @@ class KeyEffects : public KeyRuns {
 
 const std::vector<std::string> kScene{"scene.",  "camera.",   "image.", "engine.",  "primary",
                                       "report.", "sampling.", "verify", "workload."};
-const std::vector<std::string> kMachine{"topology.",    "frames.", "clocks.",  "prefetcher.", "rays.",   "packets.",
-                                        "collections.", "memory.", "shading.", "faults.",     "energy.", "area."};
+const std::vector<std::string> kMachine{"topology.", "frames.",      "clocks.", "prefetcher.", "rays.",
+                                        "packets.",  "collections.", "memory.", "shading.",    "faults.",
+                                        "energy.",   "area.",        "raster."};
 const std::vector<std::string> kTests{"bvh.",     "accuracy.",   "cull_planes.", "bundles.",
                                       "testers.", "primitives.", "programs."};
 
