@@ -1,6 +1,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <cstdlib>
 #include <vector>
@@ -41,6 +43,13 @@ std::vector<Case> some(const std::vector<Case>& cases, std::size_t least = 1) {
   return out;
 }
 
+/// Whether the `number`-th case of many runs: each, or where the effort is below 1 every 1 / effort-th, which are
+/// others for another seed.
+inline bool is_drawn(std::size_t number) {
+  const double effort = std::clamp(run_effort(), 1e-3, 1.0);
+  return (number + run_seed()) % static_cast<std::size_t>(std::lround(1 / effort)) == 0;
+}
+
 /// Whether tests run that take long and show a rule on a larger machine, or more often, than another test does: not in
 /// script/test. They are run by script/soak, and by hand.
 inline bool long_tests_run() {
@@ -49,5 +58,13 @@ inline bool long_tests_run() {
 
 /// What a test that does not run says.
 inline constexpr const char* kInSoak = "takes long: CAROUSEL_EFFORT=1, as in script/soak, runs it";
+
+/// Whether ThreadSanitizer looks on. Tests then take many times as long, and what runs on one thread shows it nothing.
+#ifdef __SANITIZE_THREAD__
+inline constexpr bool kThreadSanitizer = true;
+#else
+inline constexpr bool kThreadSanitizer = false;
+#endif
+inline constexpr const char* kOneThread = "runs on one thread: nothing for ThreadSanitizer";
 
 }  // namespace carousel

@@ -14,6 +14,7 @@
 #include "core/system/error.h"
 #include "tests/app/keys/key_rows.h"
 #include "tests/app/keys/key_runs.h"
+#include "tests/support/random_runs.h"
 
 namespace carousel::key_effects_test {
 namespace {
@@ -29,7 +30,9 @@ class KeyEffects : public KeyRuns {
     if (first) {
       base = run(row.machine, row.sets);
       ASSERT_EQ(base.refusal, "");
-      ASSERT_EQ(run(row.machine, row.sets).result, base.result) << "two runs differ";
+      if (is_drawn(bases_.size())) {
+        ASSERT_EQ(run(row.machine, row.sets).result, base.result) << "two runs differ";
+      }
     }
     const std::string own = value_at(base.config, row.key);
     for (const std::string& value : values_of(row)) {
