@@ -44,6 +44,7 @@ void expect_no_overlap(const Timeline& timeline) {
 }
 
 TEST(CycleTimeline, AddsUpToTheBusyCycles) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 300), 300, 3);
   const std::vector<std::string> shapes{"", "hierarchical", "bus", "independent", ""};
   std::uint64_t trips = 0;
@@ -107,6 +108,7 @@ TEST(CycleTimeline, IsTheSameOnAnyNumberOfThreadsAlsoWhereItIsCut) {
 }
 
 TEST(CycleTimeline, ChangesNoCycle) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 100, 2);
   for (std::uint32_t seed = run_seed(); seed < run_seed() + static_cast<std::uint32_t>(cell_count(6)); ++seed) {
     Cell cell = recorded_machine(seed + 700);
@@ -120,6 +122,7 @@ TEST(CycleTimeline, ChangesNoCycle) {
 }
 
 TEST(CycleTimeline, KeepsAWindowAndEveryNthPacket) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 600, 0), 300, 2);
   Cell cell = recorded_machine(811, "ring");
   const Timeline whole = *run_cell(scene, cell).result.timeline;

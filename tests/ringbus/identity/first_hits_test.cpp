@@ -114,6 +114,7 @@ TEST(FirstHits, OfAnOrthographicCamera) {
 
 // A camera in the middle of things: triangles behind it, across its plane, and in front.
 TEST(FirstHits, WithTrianglesAroundTheCamera) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   scene::Scene scene = builtin_scene(BuiltinScene::kTerrain, 2000, 60);
   scene::Mesh room;
   add_box(room, Vec3(-20), Vec3(20), MaterialId(0));
@@ -129,6 +130,7 @@ TEST(FirstHits, WithTrianglesAroundTheCamera) {
 
 // Two meshes in the same place: every sample is a tie, and the smaller instance has it.
 TEST(FirstHits, TiesGoToTheSmallestInstance) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   const std::size_t instances = scene.instances.size();
   for (std::size_t i = 0; i < instances; ++i) scene.instances.push_back(scene.instances[i]);
@@ -144,6 +146,7 @@ TEST(FirstHits, TiesGoToTheSmallestInstance) {
 
 // Cut-outs and veils, spheres among them, sides that are culled: asked, culled and left out as rays do.
 TEST(FirstHits, WithWhatLetsRaysThrough) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   scene::Scene scene = builtin_scene(BuiltinScene::kInstances, 3000, 60);
   const MaterialId blended(static_cast<std::uint32_t>(scene.materials.size()));
   scene.materials.emplace_back().alpha_mode = scene::AlphaMode::kBlend;
@@ -179,6 +182,7 @@ TEST(FirstHits, WithWhatLetsRaysThrough) {
 
 // Vertices on pixel corners and rays through shared edges: every sample meets one of the triangles.
 TEST(FirstHits, LeaveNoGaps) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   scene::Scene scene = builtin_scene(BuiltinScene::kSpheres, 20000, 60);
   scene.meshes.resize(1);
   scene.instances.resize(1);
@@ -191,6 +195,7 @@ TEST(FirstHits, LeaveNoGaps) {
 }
 
 TEST(FirstHits, SpheresAreLeftToRays) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   const auto before = shading::rasterize_first_hits(scene, picture(32, 32, 1), nullptr, *make_sequential_executor());
   EXPECT_EQ(before.counts.left_to_rays, 0u);
@@ -209,6 +214,7 @@ TEST(FirstHits, SpheresAreLeftToRays) {
 // The whole frame: no camera ray, each path once, nearly the same picture, and the same one however rays are handed
 // over.
 TEST(FirstHits, PathsStartAtThem) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   const Config config = picture(24, 20, 8);
   const accel::Accel accel = accel::build(scene, BvhConfig{}, *make_sequential_executor());
@@ -273,6 +279,7 @@ TEST(FirstHits, EnginesAgree) {
 }
 
 TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   Config config = picture(16, 12, 2);
   config.engine.kind = EngineKind::kCycle;
@@ -296,6 +303,7 @@ TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
 
 // A pilot begins only some of the paths, with rays held back.
 TEST(FirstHits, APilotBeginsOnlyItsPaths) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
   const Config config = picture(40, 24, 2);
   const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());

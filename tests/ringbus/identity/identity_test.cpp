@@ -22,9 +22,7 @@ const CoveringArray& the_array() {
 // Of the same suite as the machines that run, since to make the array takes longer than to run most of them.
 // Others reported this kind of fault: tt-metal 33222, 54626.
 TEST(Identity, TheArrayHoldsEveryPairThatAMachineCanHave) {
-#ifdef __SANITIZE_THREAD__
-  GTEST_SKIP() << "the array is made on one thread, and takes minutes here";
-#endif
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   MachineSpace& space = all_machines();
   const CoveringArray& array = the_array();
   std::set<std::array<std::size_t, 4>> held;
@@ -105,14 +103,15 @@ void expect_one_digest(const std::string& engine, int random_machines) {
     levels.insert(accel::text(cell.config.accuracy) + " " + std::string(enum_name(cell.config.accuracy.transform)));
     ++machines;
   };
-  const std::vector<std::string> with{"engine.kind=" + engine};
-  const Domains domains = space.domains(with);
-#ifndef __SANITIZE_THREAD__  // the other build runs them all
-  for (const Row& row : the_array().rows) {
-    const Cell cell = space.cell(row);
-    if (enum_name(cell.config.engine.kind) == engine) run(cell);
+  std::vector<std::string> with{"engine.kind=" + engine};
+  if (kThreadSanitizer) {
+    with.push_back("engine.threads=2");
+  } else {
+    for (const Row& row : the_array().rows) {
+      const Cell cell = space.cell(row);
+      if (enum_name(cell.config.engine.kind) == engine) run(cell);
+    }
   }
-#endif
   std::mt19937 random(7919 * run_seed());
   for (int i = cell_count(random_machines); i > 0; --i) run(space.draw_cell(random, with));
   // Few of the others form bundles that go back, or small ones that miss a box together.
@@ -127,9 +126,7 @@ void expect_one_digest(const std::string& engine, int random_machines) {
     all.insert(all.end(), more.begin(), more.end());
     for (int i = std::max(cell_count(20), 8); i > 0; --i) run(space.draw_cell(random, all));
   }
-#ifndef __SANITIZE_THREAD__
-  seen.expect_all();
-#endif
+  if (!kThreadSanitizer) seen.expect_all();
   std::cout << machines << " machines, at " << levels.size() << " levels of accuracy\n";
 }
 
@@ -137,9 +134,7 @@ TEST(Identity, NativeMachinesGiveTheReferenceTracersDigest) {
   expect_one_digest("native", 60);
 }
 TEST(Identity, MachinesUnderVirtualTimeGiveTheReferenceTracersDigest) {
-#ifdef __SANITIZE_THREAD__
-  GTEST_SKIP() << "these machines run on one thread";
-#endif
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   expect_one_digest("cycle", 60);
 }
 
@@ -158,6 +153,7 @@ TEST(Identity, MoreThreadsThanCores) {
 
 // Otherwise one digest a level would show nothing.
 TEST(Identity, LevelsOfAccuracyShowInTheHits) {
+  if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   Scenes scenes;
   Cell cell;
   cell.config.scene.builtin = BuiltinScene::kInstances;

@@ -18,10 +18,11 @@ void expect_one_picture(BuiltinScene builtin, std::uint32_t salt) {
   shading::PathTracer reference(scene, picture, 1000, 1);
   accel::run_reference(accel::build(scene, BvhConfig{}, *make_sequential_executor()), reference);
 
-  const std::vector<std::string> with{"engine.kind=native",        "test.non_opaque=false",
-                                      "test.storage=ample",        "test.link_faults=false",
-                                      "faults.resource.kind=none", "accuracy.triangle=watertight",
-                                      "accuracy.box=conservative", "accuracy.transform=two_step"};
+  std::vector<std::string> with{"engine.kind=native",        "test.non_opaque=false",
+                                "test.storage=ample",        "test.link_faults=false",
+                                "faults.resource.kind=none", "accuracy.triangle=watertight",
+                                "accuracy.box=conservative", "accuracy.transform=two_step"};
+  if (kThreadSanitizer) with.push_back("engine.threads=2");
   for (std::uint32_t seed = 1; seed <= static_cast<std::uint32_t>(cell_count(12)); ++seed) {
     std::mt19937 random(seed * 31 + salt);
     Cell cell = all_machines().draw_cell(random, with);

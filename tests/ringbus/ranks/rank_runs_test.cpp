@@ -29,11 +29,9 @@
 namespace carousel::ringbus {
 namespace {
 
-#ifdef __SANITIZE_THREAD__  // half of the picture: of all suites this one takes longest there
-constexpr std::uint64_t kSamples = 1;
-#else
-constexpr std::uint64_t kSamples = 2;
-#endif
+// Of all suites this one takes longest under ThreadSanitizer: there half of the picture, over one number of ranks. A
+// rank is a process, and its threads are the same beside four others.
+constexpr std::uint64_t kSamples = kThreadSanitizer ? 1 : 2;
 constexpr const char* kRankMachine =
     "scene: {builtin: cornell}\n"
     "image: {width: 24, height: 16, max_depth: 3}\n"
@@ -152,7 +150,7 @@ TEST_F(RankRuns, GiveTheHitsAndThePictureOfOneProcess) {
     load(sets);
     const Ended alone = trace(nullptr);
     ASSERT_EQ(alone.fault, "");
-    for (const std::uint32_t ranks : {2u, 5u}) {
+    for (const std::uint32_t ranks : kThreadSanitizer ? std::vector{2u} : std::vector{2u, 5u}) {
       const std::vector<Ended> ended = over(ranks);
       for (const Ended& rank : ended) {
         ASSERT_EQ(rank.fault, "");
@@ -192,7 +190,9 @@ TEST_F(RankRuns, GiveThemWithAPartitionedScene) {
     load(all);
     const Ended alone = trace(nullptr);
     ASSERT_EQ(alone.fault, "");
-    for (const std::uint32_t ranks : odd ? std::vector{1u, 3u} : std::vector{2u, 5u}) {
+    std::vector<std::uint32_t> numbers = odd ? std::vector{3u, 1u} : std::vector{2u, 5u};
+    if (kThreadSanitizer) numbers.pop_back();
+    for (const std::uint32_t ranks : numbers) {
       SCOPED_TRACE(ranks);
       const std::vector<Ended> ended = over(ranks);
       std::uint64_t structure = 0, largest = 0, shapes = 0;

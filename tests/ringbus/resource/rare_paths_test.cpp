@@ -21,8 +21,9 @@ MachineSpace scarce_machines() {
 TEST(RarePaths, RunAndLoseNothing) {
   TestScene scene(builtin_scene(BuiltinScene::kInstances, 0, 30), 250, 2);
   MachineSpace machines = scarce_machines();
-  const std::vector<std::string> with{"engine.kind=native",        "test.non_opaque=false", "test.link_faults=false",
-                                      "faults.resource.kind=none", "bundles.size=0",        "cull_planes.count=0"};
+  std::vector<std::string> with{"engine.kind=native",        "test.non_opaque=false", "test.link_faults=false",
+                                "faults.resource.kind=none", "bundles.size=0",        "cull_planes.count=0"};
+  if (kThreadSanitizer) with.push_back("engine.threads=2");
   // Little storage for many rays that go breadth first, one a packet: of these machines one in nine comes to the
   // reserve, of the others one in a thousand.
   std::vector<std::string> crowded = with;
@@ -32,7 +33,8 @@ TEST(RarePaths, RunAndLoseNothing) {
   ResourceStatistics sum;
   std::uint64_t spilled = 0, refusals = 0, reused = 0, waits = 0, bubbles = 0;
   const auto stalls = [&](StallReason reason) { return sum.stalls[reason]; };
-  const auto count = static_cast<std::uint32_t>(std::max(80, cell_count(80)));  // fewer might miss some of the code
+  // Fewer might miss some of the code. Of 80 machines half have two threads, for ThreadSanitizer all.
+  const auto count = static_cast<std::uint32_t>(std::max(kThreadSanitizer ? 40 : 80, cell_count(80)));
   const auto keep_running = [&](std::uint32_t done) {
     return done < count || (stalls(StallReason::kReserve) == 0 && done < 20 * count);
   };
