@@ -106,8 +106,7 @@ std::string text_of(const std::string& path) {
 
 // The page shows the declaration of a part of the product, which is compiled everywhere, and the list that names it.
 TEST(Extending, AWholePartIsShownAsItStandsInTheProduct) {
-  const std::string page = text_of("docs/guides/extending.md"),
-                    part = text_of("core/config/parts/stride_prefetcher.h"),
+  const std::string page = text_of("docs/guides/extending.md"), part = text_of("core/config/parts/stride_prefetcher.h"),
                     list = text_of("core/config/parts.h");
   EXPECT_NE(page.find("```cpp\n" + part + "```"), std::string::npos) << "the declaration";
   EXPECT_NE(page.find("using Parts = PartList<StridePrefetcherPart>;\n"), std::string::npos);
