@@ -33,7 +33,7 @@ if "--dump-rays" in sys.argv:
     with open(sys.argv[sys.argv.index("--dump-rays") + 1], "w") as file:
         file.write("\\n".join([*rows, "# end of 60", ""]))
     sys.exit(0)
-sets = [word for before, word in zip(sys.argv, sys.argv[1:]) if before == "--set"]
+sets = [word.split("/")[0] + word.split("/")[-1] for before, word in zip(sys.argv, sys.argv[1:]) if before == "--set"]
 rays = [word for word in sets if word.startswith(("scene.", "image.", "workload="))]
 number_of = lambda words: zlib.crc32(json.dumps(words).encode()) % 2 ** 24
 print(json.dumps({
