@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
 #include "core/config/config.h"
 #include "core/config/graph/lane_rings.h"
@@ -373,30 +374,16 @@ inline constexpr Condition kTurnedSky{[](const C& c, const S&) { return !c.scene
                                       "the sky has no map"};
 inline constexpr Condition kSkyMap{[](const C& c, const S&) { return has_sky_map(c); }, "the sky has no map"};
 
-/// The tests of a unit of this kind.
+/// The tests of a unit of this kind; null for those that every scene puts to use.
 constexpr const Condition* condition_of(UnitKind kind) {
-  switch (kind) {
-    case UnitKind::kPlane:
-      return &kPlaneUnits;
-    case UnitKind::kBundle:
-      return &kBundleUnits;
-    case UnitKind::kTransform:
-      return &kTransforms;
-    case UnitKind::kProcedural:
-      return &kProcedural;
-    case UnitKind::kAnyHit:
-      return &kAnyHitUnits;
-    case UnitKind::kMicromap:
-      return &kMicromaps;
-    case UnitKind::kHitBuffer:
-      return &kNearest;
-    case UnitKind::kDecoder:
-      return &kPackedLeaves;
-    case UnitKind::kReciprocal:
-      return &kBundles;
-    default:  // every scene puts the others to use
-      return nullptr;
-  }
+  constexpr std::pair<UnitKind, const Condition*> kConditions[] = {
+      {UnitKind::kPlane, &kPlaneUnits},      {UnitKind::kBundle, &kBundleUnits},   {UnitKind::kTransform, &kTransforms},
+      {UnitKind::kProcedural, &kProcedural}, {UnitKind::kAnyHit, &kAnyHitUnits},   {UnitKind::kMicromap, &kMicromaps},
+      {UnitKind::kHitBuffer, &kNearest},     {UnitKind::kDecoder, &kPackedLeaves}, {UnitKind::kReciprocal, &kBundles},
+  };
+  for (const auto& [unit, condition] : kConditions)
+    if (unit == kind) return condition;
+  return nullptr;
 }
 
 }  // namespace carousel::conditions
