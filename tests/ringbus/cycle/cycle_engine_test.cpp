@@ -120,7 +120,7 @@ TEST(CycleLedgers, LedgersAddUp) {
     std::uint64_t misses = 0;
     for (const CacheCounts& cache : c.caches) {
       EXPECT_EQ(cache.lines, cache.hits + cache.merged + cache.misses);
-      misses += cache.misses + cache.write_fetches;
+      misses += cache.misses + cache.write_fetches + cache.walk_reads;
     }
     for (const AheadCounts& ahead : c.fetched_ahead) misses += ahead.fetched;
     EXPECT_EQ(misses, c.memory.lines);
