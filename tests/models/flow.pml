@@ -9,6 +9,10 @@
  *   -DPLACES=n  the hand of the cycle engine (ringbus/cycle/ports.h): n places, and it takes a packet in whenever one is
  *   free. A resource knows of places in the link by credits, which come back late; a packet of its own takes a place in
  *   hand, and with the bubble rule only if two places of the link are left that nothing in hand will take.
+ *   Why that is enough. Let a resource's *spare* be its credits minus the packets in its hand: -h if the next link is full
+ *   and the hand holds h. Forwarding keeps the sum of all spares, and a retirement raises it by one. Nothing moves only if
+ *   all links and all hands of h places are full: a sum of -R h. But a packet is injected only at a spare of 2 or more, and
+ *   the others are at least -h, so that the sum is then at least 1 - (R - 1) h.
  *   -DGREEDY_HAND with bubble: takes in as much as a link holds, whatever the link onward has room for. Each hand then
  *   takes places that the bubble has been counted on for, and three resources can fill the ring in spite of it. */
 #ifndef R
