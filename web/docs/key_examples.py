@@ -254,6 +254,7 @@ KEYS = {
     "shading.program.any_hit": ["scene.builtin=foliage", "testers.any_hit=shader"] + SHADER + ["shading.program.any_hit=grey"],
     "shading.data_cache.bytes": DATA_CACHE,
     "shading.data_cache.line_bytes": DATA_CACHE + ["shading.data_cache.line_bytes=128"],
+    "memory.translation.page_bytes": ["memory.translation.page_bytes=4096"],
     "shading.translation.page_bytes": DATA_CACHE + ["shading.translation.page_bytes=4096"],
     "shading.program.default": ["shading.program.default=built_in"],
     "shading.cycles_per_any_hit": ["scene.builtin=foliage", "testers.any_hit=shader"],

@@ -59,6 +59,7 @@ RUNS = {
                            "shading.data_cache.bytes=4096", "shading.translation.page_bytes=4096", "shading.lanes=4",
                            "shading.sort=shader"] + ENERGY, []),
     "raster": (TERRAIN + ["primary=raster", "raster.time=cycles"] + ENERGY, []),
+    "raster-frames": (TERRAIN + ["primary=raster", "raster.time=cycles", "frames.count=2"], []),
     "sampled": (["scene.builtin=terrain", "scene.triangles=400", "engine.kind=cycle", "image.width=48", "image.height=32",
                  "image.samples=1", "sampling.fraction=0.5"] + ENERGY, ["--audit"]),
     "prefetcher": (["scene.builtin=terrain", "scene.triangles=2000"] + CORNELL[1:] + ["prefetcher.lines=2"] + ENERGY, []),
@@ -85,4 +86,5 @@ VARY = ("carousel", "host", "checksum", "config", "plugins", "shading.proof")
 VARYING_RUNS = ("native", "native-stopped", "ranks")
 
 # Numbers that no run has, and why.
-NONE = {"memory.own_caches.ahead": "no part asks caches of the resources' own for lines ahead yet"}
+NONE = {"memory.own_caches.ahead": "no part asks caches of the resources' own for lines ahead yet",
+        "area.search.trials[].frame_cycles": "trials of frames of more than 200,000 paths alone are sampled, which take minutes"}

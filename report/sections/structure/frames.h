@@ -15,7 +15,7 @@ struct FrameUpdateL2 {
 
 template <class V>
 void describe(V& v, const FrameUpdateL2& r) {
-  v.field("lines", r.lines, "lines", "lines that the builder asked for");
+  v.field("lines", r.lines, "lines", "lines that the unit asked for");
   v.field("hits", r.hits, "lines", "those of them that were there");
   v.field("written", r.written, "lines", "lines that it wrote");
   v.field("write_fetches", r.write_fetches, "lines",
