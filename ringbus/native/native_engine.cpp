@@ -165,7 +165,7 @@ class NativeRun {
         nothing_moved = {};
       } else {
         nothing_moved += all_looked ? now - last_look : (now - last_look) / 6;
-        stuck_ = nothing_moved > options_.stuck_after;
+        stuck_ |= nothing_moved > options_.stuck_after;  // also if a thread moves something before it ends
       }
       last_look = now;
       if (stuck_ || silent() || options_.stop.stop_requested()) threads_.end();
