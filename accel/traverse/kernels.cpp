@@ -67,6 +67,10 @@ void TraceStream(const Accel& accel, NodeKey key, const RayMembers& members, Int
   lists ? trace_in_stream(accel, key, members, counts) : TraceInterleaved(accel, key, members, counts);
 }
 
+bool HasLists() {
+  return HWY_MAX_BYTES >= 64;
+}
+
 }  // namespace carousel::accel::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -82,6 +86,7 @@ HWY_EXPORT(TestStrip);
 HWY_EXPORT(TraceSubtree);
 HWY_EXPORT(TraceInterleaved);
 HWY_EXPORT(TraceStream);
+HWY_EXPORT(HasLists);
 
 namespace {
 
@@ -118,6 +123,10 @@ void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& member
 void trace_stream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts) {
   const ExactVolumeCount volumes(counts);
   HWY_DYNAMIC_DISPATCH(TraceStream)(accel, key, members, counts);
+}
+
+bool has_lists() {
+  return HWY_DYNAMIC_DISPATCH(HasLists)();
 }
 
 std::vector<std::string> simd_targets() {

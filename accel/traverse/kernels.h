@@ -50,6 +50,9 @@ void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& member
 /// everything where registers hold fewer than sixteen floats.
 void trace_stream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
+/// Whether registers are wide enough for lists in trace_stream(), with the target that is chosen.
+bool has_lists();
+
 /// Names of the SIMD targets this program was built for and this machine has, best first.
 std::vector<std::string> simd_targets();
 /// Restricts the kernels to one target; call while nothing traces. Throws ConfigError when the machine lacks it.

@@ -56,6 +56,7 @@ constexpr Row kRows[] = {
     {"engine.lanes", kNative},
     {"engine.lanes", kTreelets},
     {"engine.lanes", kBoxesAlone},
+    {"engine.lanes", kWideRegisters},
     {"topology.resources", kFreeSize},
     {"topology.rings", kMultiRing},
     {"topology.groups", kGroups},

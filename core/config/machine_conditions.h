@@ -248,6 +248,9 @@ inline constexpr Condition kBoxesAlone{[](const C& c, const S& s) {
                                                 !is_quantised(c.bvh.storage) && !has_planes(c, s);
                                        },
                                        "lists of rays visit only nodes that hold boxes alone, in float"};
+inline constexpr Condition kWideRegisters{
+    [](const C& c, const S&) { return c.engine.simd == SimdTarget::kAuto || c.engine.simd == SimdTarget::kAvx3; },
+    "lists need registers of sixteen rays, as avx3 has"};
 inline constexpr Condition kCutTree{[](const C& c, const S&) { return c.bvh.treelets.bytes > 0; },
                                     "the tree is not cut into treelets"};
 inline constexpr Condition kBlocks{[](const C& c, const S&) { return c.collections.key == CollectionKey::kBlock; },

@@ -74,7 +74,7 @@ void describe(V& v, const Host& r) {
   v.field("audit_seconds", r.audit_seconds, "s", "time to simulate the whole frame, with --audit");
   v.field("accel_bytes", r.accel_bytes, "bytes", "size of the acceleration structure");
   v.field("peak_memory_bytes", r.peak_memory_bytes, "bytes", "most resident memory of the process");
-  v.field("simd", r.simd, "", "instruction set of the intersection kernels");
+  v.field("simd", r.simd, "", "instruction set of the intersection kernels; lists of rays (engine.lanes) need AVX3");
   v.section("links", r.links, "queues of the links over the time of the host, link by link as in links (native)");
   v.section("ray_queues", r.ray_queues, "queues between resources and shader workers (native)");
   v.section("time_series", r.time_series,

@@ -12,6 +12,7 @@
 #include "core/config/write.h"
 #include "core/system/error.h"
 #include "ringbus/results/run_features.h"
+#include "tests/accel/traverse/simd_guard.h"
 #include "tests/app/keys/key_runs.h"
 
 namespace carousel::ignored_keys_test {
@@ -150,6 +151,12 @@ TEST_F(IgnoredKeys, AreThoseThatTheUserSets) {
   EXPECT_THAT(ignored(kNative, {lists, treelets}), IsEmpty());
   for (const char* other : {"accuracy.box=double", "bvh.storage=quantised", "bvh.elements=spheres"})
     EXPECT_THAT(ignored(kNative, {lists, treelets, other}), ElementsAre("engine.lanes")) << other;
+  const accel::SimdGuard guard;
+  for (const SimdTarget target : accel::usable_simd_targets()) {
+    const bool wide = target == SimdTarget::kAuto || target == SimdTarget::kAvx3;
+    EXPECT_EQ(ignored(kNative, {lists, treelets, "engine.simd=" + std::string(enum_name(target))}).empty(), wide)
+        << enum_name(target);
+  }
   std::vector<std::string> prices{"energy.profile=n45", "energy.simple_instruction=3", "energy.shade=3"};
   EXPECT_THAT(ignored(kTerrain, prices), ElementsAre("energy.simple_instruction"));
   prices.emplace_back("shading.program=built_in");
