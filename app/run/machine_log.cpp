@@ -13,8 +13,13 @@
 namespace carousel::app {
 
 void log_machine(const Prepared& prepared) {
-  if (!spdlog::should_log(spdlog::level::debug)) return;
   const Config& config = prepared.config();
+  const EngineConfig& engine = config.engine;
+  if (engine.kind == EngineKind::kNative && engine.lanes == Lanes::kRays && engine.simd == SimdTarget::kAuto &&
+      !accel::has_lists())
+    spdlog::warn("engine.lanes: rays has no effect on this host: lists need avx3, and the best that it has is {}",
+                 accel::simd_targets().front());
+  if (!spdlog::should_log(spdlog::level::debug)) return;
   const ringbus::Topology topology(config.topology);
   spdlog::debug("machine: {} resources, shape {}, {} links", topology.resources(), enum_name(config.topology.shape),
                 topology.wires().size());

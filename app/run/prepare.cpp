@@ -163,12 +163,7 @@ void make_micromaps(Prepared& p, const BvhConfig::Micromaps& c) {
 }
 
 void build_accel(Prepared& p, ringbus::Transport* transport) {
-  const EngineConfig& engine = p.config().engine;
-  accel::select_simd_target(engine.simd);
-  if (engine.kind == EngineKind::kNative && engine.lanes == Lanes::kRays && engine.simd == SimdTarget::kAuto &&
-      !accel::has_lists())
-    spdlog::warn("engine.lanes: rays has no effect on this machine: lists need avx3, and the best it has is {}",
-                 accel::simd_targets().front());
+  accel::select_simd_target(p.config().engine.simd);
   const auto executor = make_executor(p.threads);
   {
     Phase phase("build");

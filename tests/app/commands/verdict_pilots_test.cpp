@@ -93,6 +93,21 @@ constexpr const char* kSlowMemory =
     "shape_buffer_kib: 64}\n"
     "shading: {workers: 4, cycles_per_shade: 4}\n";
 
+constexpr const char* kFarOff =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 80, height: 56, samples: 2, max_depth: 3}\n"
+    "scene: {builtin: spheres, triangles: 8000}\n"
+    "topology: {resources: 2, shape: bidirectional, visit: owners, link: {latency_cycles: 16, bytes_per_cycle: 64, "
+    "depth: 16}}\n"
+    "packets: {ids_per_cycle: 32}\n"
+    "collections: {traversal: treelet}\n"
+    "bvh: {treelet_triangles: 64}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "testers: {box: {units: 16}, triangle: {units: 1, interval_cycles: 1}, contexts: 4}\n"
+    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 4, l2_kib: 8, shape_buffer_kib: "
+    "64}\n"
+    "shading: {workers: 4, cycles_per_shade: 4}\n";
+
 // The pilot's workers are busy for 74 % of the time, and the run's for 89 %. Without these 15 points the interval of
 // contexts would be above zero; with a veto a larger pilot would name shading.
 TEST_F(VerdictPilots, ASmallDeviationOfOnePartVetoesNothingAndWidensIntervals) {
@@ -149,6 +164,15 @@ TEST_F(VerdictPilots, AClassThatStandsOutIsNamedInSpiteOfSlightlyOtherCycles) {
   EXPECT_EQ(bottleneck["limits"], "contexts") << bottleneck.dump(1);
   EXPECT_GT(bottleneck["deviation"], bottleneck["noise"].get<double>() + 0.02);
   EXPECT_LT(bottleneck["rays"], 0.06 * report["rays"]["completed"].get<double>());
+}
+
+// The run takes a third less than any of the pilots foretells. The first pilot is doubled, and still names nothing.
+TEST_F(VerdictPilots, NothingIsNamedWhereCyclesAreFarOff) {
+  const Json report = searched(kFarOff), bottleneck = report["bottleneck"];
+  EXPECT_EQ(bottleneck["limits"], "") << bottleneck.dump(1);
+  EXPECT_LT(bottleneck["deviation"], -0.25);
+  EXPECT_THAT(bottleneck["unlike"].get<std::string>(), testing::HasSubstr("cycles for the frame"));
+  EXPECT_GT(bottleneck["paths"], 500) << "no second pilot";
 }
 
 }  // namespace
