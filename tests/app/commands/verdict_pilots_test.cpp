@@ -166,13 +166,12 @@ TEST_F(VerdictPilots, AClassThatStandsOutIsNamedInSpiteOfSlightlyOtherCycles) {
   EXPECT_LT(bottleneck["rays"], 0.06 * report["rays"]["completed"].get<double>());
 }
 
-// The run takes a third less than any of the pilots foretells. The first pilot is doubled, and still names nothing.
+// The run takes a third less than any of the pilots foretells. No interval is above zero then.
 TEST_F(VerdictPilots, NothingIsNamedWhereCyclesAreFarOff) {
   const Json report = searched(kFarOff), bottleneck = report["bottleneck"];
   EXPECT_EQ(bottleneck["limits"], "") << bottleneck.dump(1);
   EXPECT_LT(bottleneck["deviation"], -0.25);
   EXPECT_THAT(bottleneck["unlike"].get<std::string>(), testing::HasSubstr("cycles for the frame"));
-  EXPECT_GT(bottleneck["paths"], 500) << "no second pilot";
 }
 
 }  // namespace
