@@ -187,6 +187,9 @@ void check_clock_names(const Config& config, const RuleBreach& breach) {
   const auto look = [&](const std::string& name, const char* list, std::size_t i) {
     if (name.empty()) return;
     used.insert(name);
+    if (name == "noc" && !config.clocks.noc)
+      return breach(fmt::format("topology.{}.{}.clock", list, i),
+                    "there is no clocks.noc; expected it besides, or clock: core; found noc");
     if (clocks.of(name)) return;
     const auto near = nearest_name(name, names);
     breach(fmt::format("topology.{}.{}.clock", list, i),

@@ -52,6 +52,7 @@ TEST_P(BadRing, IsRefusedByName) {
 
 const std::string kSlots = "{ring: 'r[*]', stops: {rule: slots}";
 const std::string kNoClock = kTraffic + three("{line: 'r[*]', both: true, clock: nocc}");
+const std::string kNoSpeed = kTraffic + three("{line: 'r[*]', both: true, clock: noc}");
 const std::string kUnusedClock = kTraffic + "clocks: {synchronizer_cycles: 3}\n" + three("{line: 'r[*]', both: true}");
 const std::string kClockOfRing = kTraffic +
                                  "clocks: {slow: 500}\ntopology: {shape: graph, nodes: [{name: r, count: 3, clock: "
@@ -140,6 +141,10 @@ INSTANTIATE_TEST_SUITE_P(
         BadConfig{"ClockOfRays", kRayClock.c_str(), "clocks.noc: only a graph has a clock of its own; expected 1000"},
         BadConfig{"UnknownClock", kNoClock.c_str(),
                   "topology.links.0.clock: expected a clock, one of core, noc; found 'nocc'; did you mean 'noc'?"},
+        BadConfig{
+            "ClockWithoutASpeed", kNoSpeed.c_str(),
+            "test.yaml:7:41: topology.links.0.clock: there is no clocks.noc; expected it besides, or clock: core; "
+            "found noc"},
         BadConfig{"UnusedClock", kUnusedClock.c_str(),
                   "clocks.synchronizer_cycles: no node or link goes by this clock; expected clock: synchronizer_cycles "
                   "at one of them; did you mean 'synchroniser_cycles'?"},
