@@ -69,7 +69,8 @@ std::string graph_yaml(const TopologyConfig& config, bool traffic) {
   std::string out;
   if (!drawn.same) out += fmt::format("# Not the same machine: {}.\n", drawn.difference);
   out += "topology:\n  shape: graph\n";
-  if (properties_of(drawn.config).has_packets) out += fmt::format("  visit: {}\n", yaml_line(topology["visit"]));
+  if (!traffic && properties_of(drawn.config).has_packets)
+    out += fmt::format("  visit: {}\n", yaml_line(topology["visit"]));
   for (const char* key : {"trace", "form", "flow", "overrides", "routes", "root", "ways", "tour", "channels"})
     if (topology.contains(key) && (!defaults.contains(key) || topology[key] != defaults[key]))
       out += fmt::format("  {}: {}\n", key, yaml_line(topology[key]));

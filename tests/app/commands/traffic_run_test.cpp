@@ -123,6 +123,7 @@ TEST(TrafficRun, EveryShapeIsItsDrawingToTheLastNumber) {
                   drawn = run({"check", "shape.yaml", "--graph"});
     ASSERT_EQ(shape.status, 0) << shape.err;
     ASSERT_EQ(drawn.status, 0) << drawn.err;
+    EXPECT_EQ(drawn.out.find("visit:"), std::string::npos) << "synthetic traffic does not meet it";
     program.write("graph.yaml", traffic + drawn.out);
     std::erase_if(arguments, [](const std::string& set) { return set.starts_with("topology."); });
     std::erase(arguments, "--set");
