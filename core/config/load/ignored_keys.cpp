@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>
@@ -37,11 +39,15 @@ void add_own(const LocatedConfig& located, const SceneFacts& scene, std::vector<
   const Config& c = located.config;
   for_each_own(c.topology, [&](const OwnOf& one) {
     const std::string place = own_place(one);
-    if (unused_because(c, scene, place)) return;  // the entry is named as a whole
+    if (unused_because(c, scene, place)) return;                      // the entry is named as a whole
+    const auto all = unused_because(c, scene, "topology.overrides");  // for nodes as well
+    const auto add = [&](std::string_view name, std::optional<std::string_view> why) {
+      const std::string key = fmt::format("{}.{}", place, name);
+      if (why) out.push_back({key, *why, located.positions.find(key)});
+    };
+    if (one.testers != nullptr && *one.testers != c.testers) add("testers", all);
     config::for_each_own_key([&](const auto& row) {
-      if (!(one.keys->*row.own)) return;
-      const std::string key = fmt::format("{}.{}", place, row.name);
-      if (const auto why = unused_because(c, scene, row.path)) out.push_back({key, *why, located.positions.find(key)});
+      if (one.keys->*row.own) add(row.name, all ? all : unused_because(c, scene, row.path));
     });
   });
 }

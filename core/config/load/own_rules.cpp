@@ -83,10 +83,6 @@ void check_own(const Config& config, const RuleBreach& breach) {
       breach(own_place(own), "synthetic traffic meets nothing of this; expected a node without numbers of its own");
     else if (config.engine.kind == EngineKind::kCycle)
       OwnRules(config, own, breach).check();
-    else if (own.override == nullptr)
-      breach(own_place(own),
-             "the native engine has equal resources; expected a node without numbers of its own, or engine.kind: "
-             "cycle");
   });
 }
 

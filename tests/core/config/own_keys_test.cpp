@@ -1,11 +1,14 @@
 // Numbers in which resources differ: where they are said, whom they reach, and what cannot differ.
 #include <string>
+#include <vector>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "core/config/load/ignored_keys.h"
+#include "core/config/load/load.h"
 #include "core/config/own_sections.h"
 #include "core/config/schema.h"
 #include "core/config/write.h"
@@ -76,6 +79,22 @@ TEST(OwnKeys, TestersOfANodeBeginWithThoseOfTheWholeMachine) {
 
 TEST(OwnKeys, AreAddedUp) {
   EXPECT_EQ(all_slots(with_nodes("slots_per_resource: 8")), 2 * 1024 + 2 * 8);
+}
+
+// At a node as in an override.
+TEST(OwnKeys, AreNamedWhereTheNativeEngineHasEqualResources) {
+  const std::string own = "{testers: {box: {units: 3}}, slots_per_resource: 8, ";
+  const auto named = [&](const std::string& engine) {
+    std::vector<std::string> out;
+    const std::string text = "scene: {builtin: cornell}\nengine: {kind: " + engine +
+                             "}\ntopology: {shape: graph, nodes: [" + own +
+                             "name: a}, {name: b}], links: [{ring: 'a, b'}], overrides: [" + own + "resource: 1}]}\n";
+    for (const IgnoredKey& key : ignored_keys(load_config({text, "test.yaml"}), {})) out.push_back(key.key);
+    return out;
+  };
+  EXPECT_THAT(named("native"),
+              ElementsAre("topology.nodes.0.slots_per_resource", "topology.nodes.0.testers", "topology.overrides"));
+  EXPECT_THAT(named("cycle"), ElementsAre());
 }
 
 struct Refused {
