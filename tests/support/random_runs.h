@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
@@ -41,13 +40,6 @@ std::vector<Case> some(const std::vector<Case>& cases, std::size_t least = 1) {
   for (std::size_t i = 0; i < wanted; ++i)
     out.push_back(cases[(run_seed() - 1 + i * cases.size() / wanted) % cases.size()]);
   return out;
-}
-
-/// Whether the `number`-th case of many runs: each, or where the effort is below 1 every 1 / effort-th, which are
-/// others for another seed.
-inline bool is_drawn(std::size_t number) {
-  const double effort = std::clamp(run_effort(), 1e-3, 1.0);
-  return (number + run_seed()) % static_cast<std::size_t>(std::lround(1 / effort)) == 0;
 }
 
 /// Whether tests run that take long and show a rule on a larger machine, or more often, than another test does: not in
