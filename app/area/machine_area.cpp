@@ -228,8 +228,9 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   }
   if (c.primary == Primary::kRaster && c.raster.time == RasterConfig::Time::kCycles) {
     store(AreaPart::kRaster, raster_kib(c));
-    parts[AreaPart::kRaster].mm2 += static_cast<double>(c.raster.triangles_per_cycle + c.raster.samples_per_cycle) *
-                                    cost(c, area_of(UnitKind::kTriangle));
+    parts[AreaPart::kRaster].mm2 +=
+        static_cast<double>(c.raster.triangles_per_cycle) * cost(c, area_of(UnitKind::kTriangle)) +
+        static_cast<double>(c.raster.samples_per_cycle) * cost(c, area_of(UnitKind::kBox));
   }
   out.mm2 = parts.mm2();
   return out;

@@ -212,6 +212,8 @@ report::Report run_rays(const ConfigArguments& arguments, const Prepared& p, Ren
   report.host.draw_seconds = job.draw_seconds();
   if (places && result.complete) {
     report.sampled = estimates(p, job, *places, result, *memory);
+    // The pass is that of the whole frame.
+    if (pass) report.raster_unit->limits = static_cast<double>(pass->cost.cycles) > report.sampled->cycles.estimate;
     add_sampled_energy(report, p.config());
   }
   if (result.cycle) foretell_effects(p, job, report);

@@ -7,13 +7,12 @@ namespace carousel::app {
 /// An L2 is read or written for each line that the unit asks for or writes, for each that comes from the memory, and
 /// for each that it keeps and sends there later.
 double unit_joules(const Costs& costs, const MemoryConfig& memory, const ringbus::cycle::BuilderUse& use,
-                   double store_kib, std::uint64_t record_bytes, std::uint64_t tests, UnitKind kind) {
+                   double store_kib, std::uint64_t record_bytes, double tests_pj) {
   const std::uint64_t line_bytes = ringbus::cycle::fetched_bytes(memory);
   const std::uint64_t moved = (use.memory.lines + use.memory.lines_written) * line_bytes,
                       bytes = (use.lines_read + use.lines_written) * line_bytes;
   const bool hbm = memory.dram.preset == DramConfig::Preset::kHbm2;
-  double pj = static_cast<double>(moved) * costs.of(hbm ? Cost::kHbm : Cost::kDram) +
-              static_cast<double>(tests) * costs.of(energy_of(kind)) +
+  double pj = static_cast<double>(moved) * costs.of(hbm ? Cost::kHbm : Cost::kDram) + tests_pj +
               static_cast<double>(bytes + record_bytes) / 8 * costs.sram_access_pj(store_kib);
   if (use.l2)
     pj += static_cast<double>(bytes + (use.memory.lines + use.l2->written_back + use.l2->drained) * line_bytes) / 8 *

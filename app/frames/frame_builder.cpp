@@ -75,8 +75,9 @@ std::uint64_t drop_all(std::vector<std::vector<std::uint64_t>>& cached) {
 /// and each box is read there.
 std::optional<double> joules_of(const Config& config, const BuilderUse& use) {
   if (config.energy.profile == CostProfile::kNone) return std::nullopt;
-  return unit_joules(costs_of(config), config.memory, use, builder_kib(config), use.boxes * BuilderConfig::kRecordBytes,
-                     use.boxes, UnitKind::kBox);
+  const Costs costs = costs_of(config);
+  return unit_joules(costs, config.memory, use, builder_kib(config), use.boxes * BuilderConfig::kRecordBytes,
+                     static_cast<double>(use.boxes) * costs.of(energy_of(UnitKind::kBox)));
 }
 
 report::FrameUpdateCost cost_of(const Config& config, const BuilderUse& use) {

@@ -56,6 +56,18 @@ class PassWork {
     return ringbus::ceil_div(count, static_cast<std::uint64_t>(rate));
   }
 
+  /// The time of any-hit calls: on the units of a resource, or on shader workers, which have nothing else to do then.
+  std::uint64_t any_hit_cycles(std::uint64_t calls) const {
+    const Config& c = p_.config();
+    if (c.testers.any_hit == TestersConfig::AnyHit::kInline) {
+      const TesterUnits& units = c.testers.units[UnitKind::kAnyHit];
+      return over(calls * static_cast<std::uint64_t>(units.interval_cycles), units.units);
+    }
+    if (c.shading.program.any_hit()) return 0;
+    return over(over(calls, c.shading.lanes) * static_cast<std::uint64_t>(c.shading.cycles_per_any_hit),
+                shader_workers(c));
+  }
+
   void read_vertices(FirstHits::Triangle of, BuilderTask& task) const {
     const std::uint32_t mesh = p_.scene.instances[of.instance].mesh.value;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -106,8 +118,8 @@ class PassWork {
     task.writes.push_back(
         {ringbus::cycle::table_of(ShadeData::kFirstHits) + order.tile_begin(column, row) * FirstHits::kSampleBytes,
          static_cast<std::uint32_t>(samples * FirstHits::kSampleBytes)});
-    task.boxes = std::max(over(tile.triangles.size(), raster_.triangles_per_cycle),
-                          over(tile.tested, raster_.samples_per_cycle));
+    task.boxes = std::max({over(tile.triangles.size(), raster_.triangles_per_cycle),
+                           over(tile.tested, raster_.samples_per_cycle), any_hit_cycles(tile.asked)});
   }
 
   const Prepared& p_;
@@ -119,6 +131,17 @@ class PassWork {
   std::uint64_t triangles_ = 0;
   BuilderWork work_;
 };
+
+/// A sample against three edges takes about as many products and comparisons as a box.
+double tests_pj(const Config& c, const FirstHits::Counts& counts) {
+  const Costs costs = costs_of(c);
+  const auto set_up = static_cast<double>(counts.triangles + counts.binned),
+             tested = static_cast<double>(counts.tested);
+  double pj = set_up * costs.of(energy_of(UnitKind::kTriangle)) + tested * costs.of(energy_of(UnitKind::kBox));
+  if (c.testers.any_hit == TestersConfig::AnyHit::kInline)
+    pj += static_cast<double>(counts.any_hit_calls) * costs.of(energy_of(UnitKind::kAnyHit));
+  return pj;
+}
 
 BuilderConfig unit_of(const RasterConfig& raster) {
   BuilderConfig out;
@@ -152,9 +175,8 @@ std::optional<RasterPass> rasterise_in_machine(const Prepared& p, const RenderJo
   cost.bytes_read = use.memory.lines * line_bytes;
   cost.bytes_written = use.memory.lines_written * line_bytes;
   cost.l2 = {use.lines_read, use.l2->hits, use.lines_written, use.l2->write_fetches, use.l2->drained};
-  const std::uint64_t tests = hits->counts.triangles + hits->counts.binned + hits->counts.tested;
   if (c.energy.profile != CostProfile::kNone)
-    cost.joules = unit_joules(costs_of(c), c.memory, use, raster_kib(c), 0, tests, UnitKind::kTriangle);
+    cost.joules = unit_joules(costs_of(c), c.memory, use, raster_kib(c), 0, tests_pj(c, hits->counts));
   return out;
 }
 

@@ -343,7 +343,8 @@ std::string report_table(const Report& report) {
                grouped(raster.triangles), grouped(raster.binned), grouped(raster.hits), grouped(raster.left_to_rays),
                seconds_text(report.host.raster_seconds.value_or(0)));
     if (report.raster_unit)
-      table.line("", "in {} cycles before the rays{}", grouped(report.raster_unit->cycles),
+      table.line("", "in {} cycles{} before the rays{}", grouped(report.raster_unit->cycles),
+                 report.sampled ? " of the whole frame" : "",
                  report.raster_unit->limits ? ", longer than they take" : "");
   }
   if (report.ranks) rank_lines(table, *report.ranks, *report.rank_links);

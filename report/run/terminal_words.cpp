@@ -83,7 +83,9 @@ void ray_words(Words& w) {
       .item("N left to rays", "raster.left_to_rays")
       .item("N", "host.raster_seconds")
       .item("in N cycles before the rays", "raster_unit.cycles")
-      .item("in N cycles before the rays, longer than they take", "raster_unit.cycles");
+      .item("in N cycles before the rays, longer than they take", "raster_unit.cycles")
+      .item("in N cycles of the whole frame before the rays", "raster_unit.cycles", "with sampling.fraction")
+      .item("in N cycles of the whole frame before the rays, longer than they take", "raster_unit.cycles");
   w.line("ranks")
       .item("N ranks", "ranks")
       .item("N messages", "rank_links[].messages")

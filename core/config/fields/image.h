@@ -83,8 +83,8 @@ inline constexpr auto kEnumNames<BuilderConfig::Asks> = [] {
 /// The unit that rasterises first hits in the simulated machine (`primary: raster`).
 struct RasterConfig {
   enum class Time : std::uint8_t { kFree, kCycles } time = Time::kFree;
-  std::int64_t triangles_per_cycle = 1, tiles_per_cycle = 1, samples_per_cycle = 16;
-  std::int64_t bytes_per_cycle = 64, requests = 64, latency_cycles = 16;
+  std::int64_t triangles_per_cycle = 1, tiles_per_cycle = 1, samples_per_cycle = 64;
+  std::int64_t bytes_per_cycle = 64, requests = 256, latency_cycles = 16;
 };
 template <>
 inline constexpr auto kEnumNames<RasterConfig::Time> = [] {

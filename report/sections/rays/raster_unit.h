@@ -29,9 +29,10 @@ void describe(V& v, const RasterUnit& r) {
   v.section("l2", r.l2, "use of the L2 that the unit asks");
   v.field(
       "joules", r.joules, "J",
-      "energy of its bytes of the memory and of the L2, its store, and a triangle test each time that a triangle is "
-      "set up or tested at a sample, with energy.profile");
-  v.field("limits", r.limits, "", "true if the pass took longer than the rays of the frame");
+      "energy of its bytes of the memory and of the L2, its store, a triangle test each time that a triangle is set "
+      "up, a box test for each test of a sample, and of any-hit units, with energy.profile");
+  v.field("limits", r.limits, "",
+          "true if the pass took longer than the rays of the frame, of a sample than their estimate");
 }
 
 }  // namespace carousel::report

@@ -107,6 +107,8 @@ TEST_F(ClustersRun, ASmallPartThatMovesTakesATwentiethOfTheBytesOfARebuild) {
   EXPECT_LT(bytes_of(row), bytes_of(second_row(kFlock, {"frames.step=0.5"}))) << "a refit of the whole mesh";
   const Json above = second_row(kFlock, {kClusters, "frames.step=0.5", "frames.builder.local_primitives=64"});
   EXPECT_EQ(above["clusters"]["dealt_meshes"], 0) << "its clusters do not fit into the store";
+  EXPECT_LT(15 * bytes_of(above), above["rebuild_bytes"].get<std::uint64_t>()) << "a rebuild in the same store";
+  EXPECT_GT(bytes_of(above), bytes_of(row)) << "smaller tasks share fewer lines";
 }
 
 // Where nothing but the far end of the series matters: clusters are hung anew, and find better orders.

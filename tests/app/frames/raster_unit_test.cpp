@@ -89,6 +89,42 @@ TEST_F(RasterUnit, TheTimeOfAStageFollowsItsRate) {
   EXPECT_EQ(base["raster_unit"]["bytes_written"], 64 * (1 + 80));
 }
 
+// A tile of leaves that are cut out: its any-hit calls are its longest stage.
+TEST_F(RasterUnit, AnyHitCallsTakeTheirTime) {
+  const auto with = [&](Sets more) {
+    more.insert(more.end(), {kTime, "image.width=8", "image.height=8", "image.samples=4", "shading.workers=2",
+                             "raster.triangles_per_cycle=64", "raster.samples_per_cycle=4096"});
+    return pass("{builtin: foliage, triangles: 300}", more);
+  };
+  const auto busy = [&](Sets more) { return with(std::move(more))["raster_unit"]["busy_cycles"].get<std::uint64_t>(); };
+  const Sets one{"testers.any_hit_unit={units: 1, interval_cycles: 100}"};
+  const Json base = with(one);
+  const std::uint64_t asked = base["raster"]["asked"];
+  ASSERT_GT(asked, 20u);
+  const std::uint64_t set_up = base["raster_unit"]["busy_cycles"].get<std::uint64_t>() - 100 * asked;
+  EXPECT_EQ(busy({"testers.any_hit_unit={units: 1, interval_cycles: 200}"}), set_up + 200 * asked);
+  EXPECT_EQ(busy({"testers.any_hit_unit={units: 3, interval_cycles: 200}"}), set_up + (200 * asked + 2) / 3);
+  const auto shaders = [&](const char* lanes) {
+    return busy({"testers.any_hit=shader", "shading.cycles_per_any_hit=200", lanes});
+  };
+  EXPECT_EQ(shaders("shading.lanes=1"), set_up + 100 * asked);
+  EXPECT_EQ(shaders("shading.lanes=4"), set_up + 100 * ((asked + 3) / 4));
+}
+
+// What a sample of the frame says of the pass, which is that of the whole frame.
+TEST_F(RasterUnit, OfASampleIsHeldAgainstTheEstimateOfTheFrame) {
+  const auto with = [&](const char* part) {
+    return pass("{builtin: spheres, triangles: 3000}",
+                {kTime, "image.width=64", "image.height=48", "raster.samples_per_cycle=1", part});
+  };
+  const Json whole = with("sampling.fraction=1"), sample = with("sampling.fraction=0.25");
+  EXPECT_EQ(cycles(sample), cycles(whole));
+  ASSERT_GT(cycles(sample), sample["engine"]["cycles"].get<std::uint64_t>());
+  ASSERT_LT(static_cast<double>(cycles(sample)), sample["sampled"]["cycles"]["estimate"].get<double>());
+  EXPECT_EQ(sample["raster_unit"]["limits"], false);
+  EXPECT_EQ(whole["raster_unit"]["limits"], false);
+}
+
 TEST_F(RasterUnit, RaysFindInTheCacheWhatThePassLeftThere) {
   const auto reads = [&](const char* kib) {
     const Json r = pass(kBalls, {kTime, "memory.l2_write=back", std::string("memory.l2_kib=") + kib});
@@ -111,7 +147,7 @@ TEST_F(RasterUnit, EachFrameHasItsPass) {
   EXPECT_EQ(report["frames"]["cycles"], sum);
   EXPECT_GT(report["raster_unit"]["joules"].get<double>(), 0);
   EXPECT_GT(report["area"]["parts"]["raster_unit"]["mm2"].get<double>(), 0);
-  EXPECT_EQ(report["area"]["parts"]["raster_unit"]["size"], 4) << "64 lines of 64 bytes";
+  EXPECT_EQ(report["area"]["parts"]["raster_unit"]["size"], 16) << "256 lines of 64 bytes";
 }
 
 TEST_F(RasterUnit, IsChargedAndNamedWhereItIsOfNoUse) {
