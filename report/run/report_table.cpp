@@ -16,7 +16,6 @@
 #include "report/text/ratio.h"
 
 namespace carousel::report {
-
 namespace {
 
 // A table is read at a glance: more lines than these are left to the files.
