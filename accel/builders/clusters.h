@@ -67,7 +67,7 @@ struct ClusterWork {
 /// than that of a refit. Then the same is done below the highest nodes above clusters of which at least one cluster in
 /// four has moved: the clusters are dealt out to the places where they hang. Other nodes above are refitted, and in a
 /// mesh of more than `most_dealt` clusters all of them. `work` has a row for each mesh that changed. Nodes and leaves
-/// keep their places and sizes. What refit() refuses is refused.
+/// keep their places and sizes. Throws what refit() throws.
 std::string update_clusters(Accel& accel, TreeClusters& clusters, const scene::Scene& before, const scene::Scene& after,
                             const SceneChange& change, BvhConfig::Storage storage, std::uint64_t most_dealt,
                             Executor& executor, std::vector<ClusterWork>& work);

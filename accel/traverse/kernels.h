@@ -50,7 +50,7 @@ void trace_interleaved(const Accel& accel, NodeKey key, const RayMembers& member
 /// everything where registers hold fewer than sixteen floats.
 void trace_stream(const Accel& accel, NodeKey key, const RayMembers& members, IntersectionCounts& counts);
 
-/// Whether registers are wide enough for lists in trace_stream(), with the target that is chosen.
+/// True if trace_stream() uses lists: the registers of the chosen target are wide enough for them.
 bool has_lists();
 
 /// Names of the SIMD targets this program was built for and this machine has, best first.

@@ -138,8 +138,8 @@ class Search {
     return out;
   }
 
-  /// Of the two splits that samples foretell the fewest cycles: the faster one on the frame of the run, since samples
-  /// may have their order wrong.
+  /// Simulates the two splits with the fewest foretold cycles on the frame of the run, and returns the faster one:
+  /// samples may have their order wrong.
   AreaSplit faster_in_the_frame() {
     std::vector<AreaSplit> splits(out_.trials.size());
     for (const auto& [split, trial] : trial_of_) splits[trial] = split;

@@ -15,7 +15,7 @@ namespace carousel::app {
 report::Report build_report(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& result,
                             const accel::VerifyingWorkload* verifying);
 
-/// What the reports of the network alone and of the memory alone have alike. The digest is that of no rays.
+/// Builds the parts that reports of the network alone and of the memory alone share. Its digest is that of no rays.
 report::Report report_without_rays(const Prepared& prepared, bool complete, std::uint64_t cycles, std::size_t threads,
                                    double wall_seconds);
 

@@ -29,7 +29,7 @@ class RenderJob {
   /// pass, and must outlive the job.
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
-  /// What some paths of each piece of the frame come to, traced depth-first: paths, rays, box tests and other tests.
+  /// Work of some paths of each piece of the frame, traced depth-first: paths, rays, box tests and other tests.
   using PieceWork = std::vector<std::array<double, 4>>;
   /// Traces one path in `one_in` of the frame of this configuration, but `least` or more.
   PieceWork survey(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kWithout = "without virtual channels";
 
-/// What a node has that a station of a ring has not.
+/// Names a property of the node that a station of a ring cannot have.
 std::optional<GraphIssue> fault_of(const Graph::Node& node) {
   const std::string key = fmt::format("topology.nodes.{}", node.entry);
   const GraphNode& drawn = *node.drawn;
@@ -34,7 +34,7 @@ std::optional<GraphIssue> fault_of(const Graph::Node& node) {
   return std::nullopt;
 }
 
-/// What a link says that is not so for all.
+/// Names a property of the link that other links do not share.
 std::optional<GraphIssue> fault_of(const LinkConfig& all, const Graph::Link& link) {
   for (const auto& [name, found, expected] : {std::tuple("latency_cycles", link.latency_cycles, all.latency_cycles),
                                               {"bytes_per_cycle", link.bytes_per_cycle, all.bytes_per_cycle},

@@ -17,8 +17,8 @@ struct LaneRings {
 /// Tells whether synthetic packets keep their lanes on this network.
 bool keeps_lanes(const TopologyConfig& config);
 
-/// Finds the rings of a drawing of which keeps_lanes() holds; `graph`: its links for packets. What is no such ring is
-/// appended to `issues`, and then nothing else is said.
+/// Finds the rings of a drawing of which keeps_lanes() holds; `graph`: its links for packets. Appends the first
+/// reason why they are no such rings to `issues`; the result is then incomplete.
 LaneRings lane_rings(const TopologyConfig& config, const Graph& graph, std::vector<GraphIssue>& issues);
 
 }  // namespace carousel::config

@@ -75,6 +75,7 @@ TEST_F(VerdictRun, TheLastFrameOfASeriesIsSearchedWithItsWarmCaches) {
   const Json& rows = report["frames"]["rows"];
   ASSERT_GT(rows[0]["cycles"].get<double>(), 1.5 * rows[1]["cycles"].get<double>()) << rows.dump(1);
   ASSERT_TRUE(report["bottleneck"]["whole_frame"]) << report["bottleneck"].dump(1);
+  ASSERT_FALSE(report["bottleneck"]["gains"].empty()) << report["bottleneck"].dump(1);
   for (const Json& gain : report["bottleneck"]["gains"]) EXPECT_GT(gain["gain"], -0.1) << gain.dump();
   EXPECT_TRUE(report["cycle_noise"]["whole_frame"]);
   EXPECT_LT(report["cycle_noise"]["fraction"], 0.3);

@@ -185,6 +185,25 @@ TEST_F(ClustersRun, AnL2ThatTheBuilderAsksTakesTheEnergyOfABank) {
   }
 }
 
+// Each line that the L2 asks of the memory, or writes there, looks its page up in a TLB of 64 entries of 16 bytes, a
+// word, and a walk writes one. A walk reads four lines of the page table for an address of 48 bits, past the L2.
+TEST_F(ClustersRun, ItsPagesTakeTheEnergyOfATlb) {
+  const auto update = [&](const char* pages) {
+    return second_row(kWaves,
+                      {kClusters, "frames.step=0.2", "frames.builder.asks=l2", "energy.profile=n45", pages})["builder"];
+  };
+  const Json without = update("memory.translation.page_bytes=0"),
+             with = update("memory.translation={page_bytes: 4096, entries: 64}");
+  const double moved = without["bytes_read"].get<double>() + without["bytes_written"].get<double>(),
+               walked = with["bytes_read"].get<double>() - without["bytes_read"].get<double>();
+  ASSERT_GT(walked, 0);
+  EXPECT_EQ(with["l2"], without["l2"]);
+  EXPECT_EQ(with["bytes_written"], without["bytes_written"]);
+  const double access = 10 * std::pow(2, std::log(1.0 / 8) / std::log(4));  // of 1 KiB: 8 take 10 pJ, and 32 twice that
+  EXPECT_NEAR(with["joules"].get<double>() - without["joules"].get<double>(),
+              1e-12 * (244 * walked + access * (moved / 64 + walked / 64 / 4)), 1e-14);
+}
+
 TEST_F(ClustersRun, RefusesWhatDoesNotFit) {
   const auto no = [&](const std::string& set, const std::string& message) {
     refused(kWaves, {"frames.count=2", kClusters, set}, message);
