@@ -19,7 +19,7 @@ constexpr std::array kCharges{
     Charge{"ray_reads", "testers read any number of ray records in a cycle", "rays.reads_per_cycle", "0", "1"},
     Charge{"l2_answers", "a shared cache answers with any number of bytes in a cycle",
            "memory.l2_answer_bytes_per_cycle", "0", "16"},
-    Charge{"l2_misses", "a shared cache keeps track of any number of lines on their way", "memory.l2_mshrs", "0", "16"},
+    Charge{"l2_misses", "a shared cache keeps track of any number of lines on their way", "memory.l2_mshrs", "0", "64"},
     Charge{"l1_misses", "a resource's own cache keeps track of any number of lines on their way", "memory.l1_mshrs",
            "0", "8"},
     Charge{"path_state", "the states of paths are where shading needs them", "memory.path_state", "free", "memory"},
@@ -33,6 +33,10 @@ constexpr std::array kCharges{
     Charge{"lookups", "texture lookups take no time", "shading.cycles_per_lookup", "0", "5"},
     Charge{"stack_room", "stacks of rays have room for all of their entries", "testers.stack_entries", "0", "8"},
     Charge{"translation", "addresses of the memory are physical", "memory.translation.page_bytes", "0", "2097152"},
+    Charge{"instructions", "the instructions of all programs are at hand in each shader worker",
+           "shading.instruction_cache.bytes", "0", "4096"},
+    Charge{"program_pages", "addresses of the data that shader programs read are physical",
+           "shading.translation.page_bytes", "0", "2097152"},
     Charge{"raster", "first hits are rasterised in no time, and are where shading needs them", "raster.time", "free",
            "cycles"},
     Charge{"stack", "choosing a ray and moving entries of its stack take no cycles", "", "", "",
@@ -41,6 +45,14 @@ constexpr std::array kCharges{
            "", "", "rays.query.rounds=resume"},
     Charge{"quantised_nodes", "decoding quantised nodes takes no cycles", "", "", "",
            "bvh.storage=quantised bvh.storage=quantised_12"},
+    Charge{"shape_reads", "shapes that lie in a resource's buffer are read in no time", "", "", "",
+           "memory.shape_buffer_kib"},
+    Charge{"ray_writes", "results are written to ray records without a port", "", "", "", "rays.reads_per_cycle"},
+    Charge{"sorted_vectors", "completed rays are sorted by shader without bytes that move", "", "", "",
+           "shading.sort_rays_per_cycle"},
+    Charge{"loaded_programs", "programs are in their stores from the start", "", "", "", "programs.simple_cycles"},
+    Charge{"moved_vertices", "vertices are moved, and a rebuild sorts primitives along three axes, in no time", "", "",
+           "", "frames.builder"},
 };
 
 /// The value of a key as `--set` takes it; empty if the configuration has none.
@@ -56,13 +68,14 @@ std::string value_of(const nlohmann::ordered_json& config, std::string_view key)
   return at->is_string() ? at->get<std::string>() : at->dump();
 }
 
-/// `settings`: with spaces between them.
+/// `settings`: with spaces between them; a key alone is one of any value.
 bool has_one_of(const LocatedConfig& located, const nlohmann::ordered_json& json, const SceneFacts& scene,
                 std::string_view settings) {
   while (!settings.empty()) {
     const std::size_t end = std::min(settings.find(' '), settings.size());
     const std::string_view setting = settings.substr(0, end), key = setting.substr(0, setting.find('='));
-    if (value_of(json, key) == setting.substr(key.size() + 1) && in_use(located.config, scene, key)) return true;
+    const bool set = key == setting || value_of(json, key) == setting.substr(key.size() + 1);
+    if (set && in_use(located.config, scene, key)) return true;
     settings.remove_prefix(std::min(end + 1, settings.size()));
   }
   return false;

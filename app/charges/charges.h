@@ -16,7 +16,8 @@ struct Charge {
   const char* key;      ///< that charges it; empty: none does
   const char* free;     ///< its value that charges nothing
   const char* charged;  ///< a usual one that does
-  /// Without a key: the machines that have it are those with one of these settings, such as "a.b=c d=e".
+  /// Without a key: the machines that have it are those with one of these settings, such as "a.b=c d=e"; a key
+  /// without a value: those in which it has an effect.
   const char* where = "";
 };
 

@@ -41,6 +41,11 @@ void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins, con
       ->type_name("FILE");
 }
 
+void add_charge_all_option(CLI::App& command, ConfigArguments& arguments) {
+  command.add_flag("--charge-all", arguments.charge_all,
+                   "Charge everything that has a key, as far as the machine may have it (default: as configured)");
+}
+
 void add_strict_option(CLI::App& command, ConfigArguments& arguments) {
   command.add_flag(
       "--strict", arguments.strict,

@@ -21,9 +21,11 @@ void add_set_option(CLI::App& command, std::vector<std::string>& sets);
 void add_log_options(CLI::App& command, LogArguments& arguments);
 /// The file of the configuration, and --set. `without`: what the command does without one; null: it needs one.
 void add_config_options(CLI::App& command, ConfigArguments& arguments, const char* without = nullptr);
-/// --strict.
 /// `--plugin` for commands that take no configuration.
 void add_plugin_option(CLI::App& command, std::vector<std::string>& plugins, const char* absent);
+/// --charge-all.
+void add_charge_all_option(CLI::App& command, ConfigArguments& arguments);
+/// --strict.
 void add_strict_option(CLI::App& command, ConfigArguments& arguments);
 
 }  // namespace carousel::app

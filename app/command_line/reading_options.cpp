@@ -43,6 +43,7 @@ void add_versus(CLI::App& program, VersusArguments& v) {
   CLI::App* versus = program.add_subcommand(
       "versus", "Compare a machine with the conventional one of the same units, memory and rays, and of equal area");
   add_config_options(*versus, v);
+  add_charge_all_option(*versus, v);
   versus->add_option("--seeds", v.seeds, "Seeds of the picture with which each machine is simulated")
       ->check(CLI::Range(1, 64))
       ->type_name("N")

@@ -9,8 +9,7 @@ void add_run(CLI::App& program, RunArguments& r) {
   CLI::App* run = program.add_subcommand("run", "Simulate one configuration; write a report and the picture");
   add_config_options(*run, r);
   add_strict_option(*run, r);
-  run->add_flag("--charge-all", r.charge_all,
-                "Charge everything that has a key, as far as the machine may have it (default: as configured)");
+  add_charge_all_option(*run, r);
   run->add_option("--out", r.out, "Folder for report and picture (default: out/<config name>)")->type_name("DIR");
   run->add_flag("--hits", r.hits, "Write hits.csv, one row per ray (default: not written)");
   run->add_option("--dump-rays", r.dump_rays,

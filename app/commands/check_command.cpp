@@ -153,8 +153,7 @@ int print_check(const CheckArguments& arguments, const Prepared& p) {
   }
   if (!verdict.can_deadlock) return status;
   spdlog::error("{}: {}: the links of this machine can fill up and stop, and run refuses it without --force",
-                arguments.config,
-                p.config().topology.shape == TopologyShape::kGraph ? "topology.links" : "topology.flow");
+                arguments.config, stuck_key(p.config()));
   return kUsage;
 }
 

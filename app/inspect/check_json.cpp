@@ -72,9 +72,13 @@ Json check_json(const std::string& file, const Prepared& p, const ringbus::Deadl
   for (const std::string& warning : p.warnings) warnings.push_back(issue_json({}, "", warning));
   for (const IgnoredKey& key : p.ignored()) ignored.push_back(issue_json(key.position, key.key, std::string(key.why)));
   const bool told = !warnings.empty() || !ignored.empty();
+  Json errors = Json::array();
+  if (verdict.can_deadlock)
+    errors.push_back(issue_json({.file = file}, stuck_key(p.config()),
+                                "the links of this machine can fill up and stop, and run refuses it without --force"));
   Json out{{"config", file},
            {"valid", !verdict.can_deadlock && !(strict && told)},
-           {"errors", Json::array()},
+           {"errors", std::move(errors)},
            {"warnings", std::move(warnings)},
            {"ignored_keys", std::move(ignored)},
            {"deadlock", {{"possible", verdict.can_deadlock}, {"rule", verdict.rule}}}};
@@ -85,6 +89,10 @@ Json check_json(const std::string& file, const Prepared& p, const ringbus::Deadl
   if (p.config().topology.shape == TopologyShape::kGraph) out["graph"] = graph_json(p.config().topology);
   out["resolved"] = config_json(p.absolute_config());
   return out;
+}
+
+const char* stuck_key(const Config& config) {
+  return config.topology.shape == TopologyShape::kGraph ? "topology.links" : "topology.flow";
 }
 
 Json refusal_json(const std::string& file, const std::exception_ptr& error) {

@@ -177,7 +177,11 @@ TEST(CheckCommand, JsonOfARefusalNamesEachPlace) {
   program.write("b.yaml", "scene: {builtin: cornell}\ntopology: {flow: none}\n");
   const Outcome deadlock = program.run({"check", "b.yaml", "--json"});
   EXPECT_EQ(deadlock.status, 2);
-  EXPECT_EQ(Json::parse(deadlock.out)["deadlock"]["possible"], true);
+  const Json stuck = Json::parse(deadlock.out);
+  EXPECT_EQ(stuck["deadlock"]["possible"], true);
+  EXPECT_FALSE(stuck["valid"]);
+  ASSERT_EQ(stuck["errors"].size(), 1) << "what is invalid has an error";
+  EXPECT_EQ(stuck["errors"][0]["key"], "topology.flow");
 }
 
 TEST(CheckCommand, StrictTakesIgnoredKeysAndWarningsOfTheImportForErrors) {
