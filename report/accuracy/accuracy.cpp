@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "core/numeric/exponential.h"
 #include "core/numeric/student.h"
 #include "report/accuracy/level_text.h"
 
@@ -135,13 +136,13 @@ CostRatio cost_ratio(const Spread& a, const Spread& b) {
   const std::size_t pairs = std::min(a.samples.size(), b.samples.size());
   if (pairs < 2) return {a.median / b.median, a.least / b.most, a.most / b.least};
   std::vector<double> logs;
-  for (std::size_t i = 0; i < pairs; ++i) logs.push_back(std::log(a.samples[i] / b.samples[i]));
+  for (std::size_t i = 0; i < pairs; ++i) logs.push_back(log_precise(a.samples[i] / b.samples[i]));
   const double count = static_cast<double>(pairs), mean = std::accumulate(logs.begin(), logs.end(), 0.0) / count;
   double squares = 0;
   for (const double x : logs) squares += (x - mean) * (x - mean);
   const double t = student_95(count - 1);
   const double half = t * std::sqrt(squares / (count - 1) / count);
-  return {std::exp(mean), std::exp(mean - half), std::exp(mean + half)};
+  return {exp_precise(mean), exp_precise(mean - half), exp_precise(mean + half)};
 }
 
 void compare_costs(std::vector<AccuracyRow>& rows) {
@@ -205,7 +206,7 @@ double log_log_slope(const std::vector<SamplingRow>& rows) {
   double n = 0, x = 0, y = 0, xx = 0, xy = 0;
   for (const SamplingRow& row : rows) {
     if (row.rmse <= 0) continue;
-    const double a = std::log(static_cast<double>(row.samples)), b = std::log(row.rmse);
+    const double a = log_precise(static_cast<double>(row.samples)), b = log_precise(row.rmse);
     n += 1, x += a, y += b, xx += a * a, xy += a * b;
   }
   const double determinant = n * xx - x * x;

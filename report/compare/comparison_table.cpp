@@ -24,6 +24,12 @@ std::string sameness(const std::vector<bool>& same) {
   return others.empty() ? "the same" : "different: " + others + " from A";
 }
 
+/// Names of counts as words.
+std::string name_text(std::string name) {
+  std::replace(name.begin(), name.end(), '_', ' ');
+  return name;
+}
+
 std::string value_text(const ComparedRow& row, std::size_t run) {
   const std::optional<double>& value = row.values[run];
   if (!value) return "-";
@@ -54,7 +60,7 @@ std::string section_text(const ComparedSection& section, const Comparison& of) {
   for (std::size_t r = 0; r < runs; ++r) cells[0].push_back(letter(r));
   for (std::size_t r = 1; r < runs; ++r) cells[0].push_back(letter(r) + "/A");
   for (const ComparedRow& row : section.rows) {
-    std::vector<std::string>& line = cells.emplace_back(std::vector<std::string>{row.name, row.unit});
+    std::vector<std::string>& line = cells.emplace_back(std::vector<std::string>{name_text(row.name), row.unit});
     for (std::size_t r = 0; r < runs; ++r) line.push_back(value_text(row, r));
     for (std::size_t r = 1; r < runs; ++r)
       line.push_back((row.of_cycles && of.within_noise[r] ? "~" : "") + ratio_text(row, r));

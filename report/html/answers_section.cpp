@@ -1,6 +1,6 @@
 #include <algorithm>
-#include <cctype>
 #include <cmath>
+#include <cstdint>
 
 #include <fmt/format.h>
 
@@ -15,11 +15,6 @@
 namespace carousel::report::html {
 
 namespace {
-
-std::string capital(std::string text) {
-  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
-  return text;
-}
 
 std::string signed_percent(double fraction) {
   return fmt::format("{}{:.1f} %", fraction < 0 ? "−" : "+", std::abs(100 * fraction));
@@ -168,7 +163,9 @@ Html cost_card(const Json& report) {
       all += number_at(row, "bytes");
       if (text_at(row, "from") == "DRAM" || text_at(row, "to") == "DRAM") memory += number_at(row, "bytes");
     }
-    item("Bytes", fmt::format("{:.0f} in all, {:.0f} of them to and from DRAM", all / rays, memory / rays));
+    item("Bytes",
+         fmt::format("{} in all, {} of them to and from DRAM", grouped(static_cast<std::uint64_t>(all / rays + 0.5)),
+                     grouped(static_cast<std::uint64_t>(memory / rays + 0.5))));
   }
   if (find(report, "energy.nj_per_ray"))
     item("Energy", fmt::format("{:.3g} nJ", number_at(report, "energy.nj_per_ray")));

@@ -1,6 +1,7 @@
 #include "report/html/html.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <string_view>
@@ -59,6 +60,26 @@ std::string words(std::string_view key) {
     if (out == small || out.starts_with(small + std::string(" ")))
       out.replace(0, std::string_view(small).size(), great);
   return out;
+}
+
+std::string sentence_words(std::string_view text) {
+  std::string out;
+  while (!text.empty()) {
+    const std::size_t end = std::min(text.find(' '), text.size());
+    const std::string_view word = text.substr(0, end);
+    const std::size_t dot = word.find('.');
+    const bool key =
+        dot + 1 < word.size() && dot != word.npos && std::isalpha(static_cast<unsigned char>(word[dot + 1]));
+    out += key ? std::string(word) : words(word);
+    if (end < text.size()) out += ' ';
+    text.remove_prefix(std::min(end + 1, text.size()));
+  }
+  return out;
+}
+
+std::string capital(std::string text) {
+  if (!text.empty()) text[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(text[0])));
+  return text;
 }
 
 std::string value_text(const Json& value, std::string_view unit) {

@@ -16,6 +16,12 @@ using Json = nlohmann::ordered_json;
 /// `memory_latency` as "memory latency".
 std::string words(std::string_view key);
 
+/// A sentence with names such as memory_latency in it as words. Keys, which have dots between names, stay.
+std::string sentence_words(std::string_view text);
+
+/// With a capital at the start.
+std::string capital(std::string text);
+
 /// A value as people read it: groups of digits for counts, percent for the unit `fraction`, yes or no.
 std::string value_text(const Json& value, std::string_view unit = "");
 

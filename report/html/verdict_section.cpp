@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cctype>
 
 #include <fmt/format.h>
 
@@ -28,11 +27,10 @@ std::string verdict_sentence(const Json& report) {
           out += (i == 0 ? " " : ", ") + words(rivals[i].get<std::string>());
         if (rivals.size() > kShown) out += fmt::format(" and {} more", rivals.size() - kShown);
       }
-      out[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(out[0])));
-      return out + ".";
+      return capital(out) + ".";
     }
   }
-  if (bottleneck) return words(text_at(*bottleneck, "verdict")) + ".";
+  if (bottleneck) return capital(sentence_words(text_at(*bottleneck, "verdict"))) + ".";
   if (find(report, "traffic"))
     return fmt::format(
         "The network accepted {:.4f} of {:.4f} offered packets a resource and cycle, with a mean latency of "

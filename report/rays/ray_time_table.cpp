@@ -5,17 +5,20 @@
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
+#include "report/text/table_lines.h"
 
 namespace carousel::report {
 
 std::string ray_time_table(const RayTime& time) {
   const RayStageCounts stages = time.stages();
   const std::uint64_t cycles = cycles_of(stages);
-  std::string out = fmt::format("{:<13}{:.1f} cycles a ray", "ray time", ratio(cycles, time.rays()));
+  Items items;
+  items.add(fmt::format("{:.1f}", ratio(cycles, time.rays())), "cycles a ray");
   for (const Counter<RayStageCounts>& row : kCounters<RayStageCounts>)
-    if (const double part = ratio(row.value(stages), cycles); part >= 0.01)
-      out += fmt::format("   {} {}", row.name, percent(part));
-  return out + "\n";
+    if (const double part = ratio(row.value(stages), cycles); part >= 0.01) items.add(row.name, percent(part));
+  Table table;
+  items.lines(table, "ray time");
+  return table.take();
 }
 
 std::string heat_table(const Heat& heat) {

@@ -10,10 +10,10 @@
 #include "report/run/part_table.h"
 #include "report/run/report_json.h"
 #include "report/run/sampled_table.h"
-#include "report/run/table_lines.h"
 #include "report/run/verdict_table.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
+#include "report/text/table_lines.h"
 
 namespace carousel::report {
 namespace {
@@ -59,8 +59,10 @@ void resource_lines(Table& table, const std::vector<Resource>& resources, const 
   spread_line(table, "rays tested", testing, [](const Resource& r) { return r.counts.local_rays; });
   spread_line(table, "box tests", testing, [](const Resource& r) { return r.tests.box; });
   spread_line(table, "triangle tests", testing, [](const Resource& r) { return r.tests.triangle; });
-  spread_line(table, "packets issued", issuing, [](const Resource& r) { return r.counts.packets_issued; });
-  spread_line(table, "packets seen", testing, [](const Resource& r) { return r.counts.visits; });
+  if (std::any_of(issuing.begin(), issuing.end(), [](const Resource& r) { return r.counts.packets_issued > 0; })) {
+    spread_line(table, "packets issued", issuing, [](const Resource& r) { return r.counts.packets_issued; });
+    spread_line(table, "packets seen", testing, [](const Resource& r) { return r.counts.visits; });
+  }
   if (!resources.front().stalls) return;
   StallCounts stalls;
   for (const Resource& r : resources) stalls += *r.stalls;
@@ -166,7 +168,7 @@ void proof_line(Table& table, const EffectsProof& proof) {
 }
 
 void packet_lines(Table& table, const Report& report) {
-  if (const auto& p = report.packets) {
+  if (const auto& p = report.packets; p && p->counts.packets_issued > 0) {
     const ResourceCounts& c = p->counts;
     table.line("packets", "{} issued   {} retired   {:.2f} per ray   {:.1f} hops each", grouped(c.packets_issued),
                grouped(c.packets_retired), ratio(c.packets_issued, report.rays.completed),
@@ -174,7 +176,7 @@ void packet_lines(Table& table, const Report& report) {
     table.line("", "{:.1f} rays each   {} of the rays seen are local   {} of visits find none", p->rays_mean(),
                percent(p->local_fraction()), percent(p->bubble_fraction()));
   }
-  if (const auto& c = report.collections) {
+  if (const auto& c = report.collections; c && c->counts.created > 0) {
     table.line("collections", "{} made   {} full   most in one resource: {}, with {} ray IDs   {} spilled",
                grouped(c->counts.created), percent(c->fullness_mean), grouped(c->counts.peak),
                grouped(c->counts.memberships_peak), grouped(c->counts.spilled));
@@ -361,11 +363,7 @@ std::string report_table(const Report& report) {
   if (report.heat) table.text(heat_table(*report.heat));
   if (report.bottleneck) table.text(verdict_table(*report.bottleneck));
   if (report.cycle_noise) table.text(noise_table(*report.cycle_noise));
-  if (report.charges && !report.charges->empty()) {
-    std::string names;
-    for (const Charge& charge : *report.charges) names += (names.empty() ? "" : ", ") + charge.name;
-    table.line("not charged", "{}", names);
-  }
+  if (report.charges) table.text(charges_table(*report.charges));
   if (report.bound && !report.bound->classes.empty())
     table.line("bound", "{:.2f} rays per kilocycle by {}, reached {}", report.bound->rays_per_kilocycle,
                report.bound->classes.front().name, percent(report.bound->reached));

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
+#include "report/text/table_lines.h"
 
 namespace carousel::report {
 
@@ -34,6 +35,14 @@ std::string noise_table(const CycleNoise& noise) {
   return fmt::format(
       "{:<13}{} to {} cycles with another seed of the picture, {} more or less, by {} seeds of {} paths\n", "noise",
       grouped(noise.low), grouped(noise.high), percent(noise.fraction), noise.seeds, grouped(noise.paths));
+}
+
+std::string charges_table(const std::vector<Charge>& charges) {
+  std::string names;
+  for (const Charge& charge : charges) names += (names.empty() ? "" : ", ") + charge.name;
+  Table table;
+  wrapped_lines(table, "not charged", names, ", ");
+  return table.take();
 }
 
 std::string spared_table(const EffectsSpared& spared) {

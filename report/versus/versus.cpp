@@ -6,8 +6,10 @@
 
 #include <fmt/format.h>
 
+#include "core/numeric/exponential.h"
 #include "core/numeric/student.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::report {
 
@@ -37,7 +39,9 @@ std::string mean_text(const VersusMean& mean) {
 
 std::string ratio_text(const VersusRatio& ratio) {
   if (!ratio.low) return fmt::format("{:.3f}", ratio.ratio);
-  return fmt::format("{:.3f} ± {:.3f}", ratio.ratio, std::max(*ratio.high - ratio.ratio, ratio.ratio - *ratio.low));
+  const double half = std::max(*ratio.high - ratio.ratio, ratio.ratio - *ratio.low);
+  if (half < ratio.ratio) return fmt::format("{:.3f} ± {:.3f}", ratio.ratio, half);
+  return fmt::format("{:.3f} ({:.2f} to {:.4g})", ratio.ratio, *ratio.low, *ratio.high);  // few runs that differ much
 }
 
 const VersusMachine* machine_named(const Versus& v, std::string_view name) {
@@ -56,9 +60,9 @@ std::string class_words(std::string name) {
 
 std::string speed_line(const VersusMachine& machine, const VersusMachine& twin, const VersusPair& pair,
                        std::uint64_t seeds) {
-  return fmt::format("{}: {} times as fast as its twin, {} over {} rays per kilocycle, {} {}", pair.verdict,
+  return fmt::format("{}: {} times as fast as its twin, {} over {} rays per kilocycle, {} seeds", pair.verdict,
                      ratio_text(pair.speed), mean_text(machine.rays_per_kilocycle), mean_text(twin.rays_per_kilocycle),
-                     seeds, seeds == 1 ? "seed" : "seeds");
+                     seeds);
 }
 
 std::string cost_line(const VersusMachine& machine, const VersusMachine& twin, const VersusPair& pair) {
@@ -122,13 +126,13 @@ VersusMean versus_mean(const std::vector<double>& values) {
 VersusRatio versus_ratio(const std::vector<double>& ours, const std::vector<double>& theirs) {
   std::vector<double> logs;
   for (std::size_t i = 0; i < std::min(ours.size(), theirs.size()); ++i)
-    if (ours[i] > 0 && theirs[i] > 0) logs.push_back(std::log(ours[i] / theirs[i]));
+    if (ours[i] > 0 && theirs[i] > 0) logs.push_back(log_precise(ours[i] / theirs[i]));
   if (logs.empty()) return {};
   const Interval of = interval_of(logs);
-  VersusRatio out{std::exp(of.mean), std::nullopt, std::nullopt};
+  VersusRatio out{exp_precise(of.mean), std::nullopt, std::nullopt};
   if (of.half) {
-    out.low = std::exp(of.mean - *of.half);
-    out.high = std::exp(of.mean + *of.half);
+    out.low = exp_precise(of.mean - *of.half);
+    out.high = exp_precise(of.mean + *of.half);
   }
   return out;
 }
@@ -137,10 +141,12 @@ std::vector<std::string> versus_lines(const Versus& v) {
   const VersusMachine *machine = machine_named(v, "machine"), *twin = machine_named(v, "twin");
   const VersusPair* pair = pair_with(v, "twin");
   if (machine == nullptr || twin == nullptr || pair == nullptr) return {};
-  return {speed_line(*machine, *twin, *pair, v.seeds), cost_line(*machine, *twin, *pair),
-          area_line(*machine, machine_named(v, "twin_at_equal_area"), pair_with(v, "twin_at_equal_area"),
-                    v.drawing.has_value()),
-          part_line(v, *machine, *twin), turn_line(v, *pair)};
+  std::vector<std::string> lines{speed_line(*machine, *twin, *pair, v.seeds), cost_line(*machine, *twin, *pair),
+                                 area_line(*machine, machine_named(v, "twin_at_equal_area"),
+                                           pair_with(v, "twin_at_equal_area"), v.drawing.has_value()),
+                                 part_line(v, *machine, *twin), turn_line(v, *pair)};
+  for (std::string& line : lines) line = singular(line);
+  return lines;
 }
 
 }  // namespace carousel::report

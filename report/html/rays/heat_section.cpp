@@ -1,10 +1,12 @@
 #include <algorithm>
+#include <cstdint>
 
 #include <fmt/format.h>
 
 #include "report/html/html.h"
 #include "report/html/packed_series.h"
 #include "report/html/run_sections.h"
+#include "report/text/number_text.h"
 
 namespace carousel::report::html {
 
@@ -22,9 +24,9 @@ Html heat_section(const Json& report, const Json& schema, const Picture& map) {
         map.mime_type, base64(map.bytes), side("width"), side("height"));
   }
   out += markup(
-      "<p>The rays of a pixel take {:.0f} cycles in the mean. <code>carousel run --heat log</code> draws the pixels' "
+      "<p>The rays of a pixel take {} cycles in the mean. <code>carousel run --heat log</code> draws the pixels' "
       "cycles, tests, hops and waiting; <code>carousel follow CONFIG --pixel X,Y</code> tells the life of a ray.</p>\n",
-      number_at(*heat, "cycles_mean"));
+      grouped(static_cast<std::uint64_t>(number_at(*heat, "cycles_mean") + 0.5)));
   return out + table_of("slow-pixels", "Slowest pixels", (*heat)["slowest"],
                         schema_at(schema, "properties.heat.properties.slowest.items"))
                    .html();

@@ -6,6 +6,7 @@
 #include "core/statistics/ray_stage_counts.h"
 #include "report/html/html.h"
 #include "report/html/run_sections.h"
+#include "report/html/still.h"
 
 namespace carousel::report::html {
 
@@ -50,6 +51,14 @@ Html ray_time_section(const Json& report) {
              "<p>A ray takes {:.1f} cycles from its making until it has been shaded, in the mean of {} rays. Each of "
              "them is in one stage, that which led to its next test; the stages add up to the cycle.</p>\n",
              number_at(*time, "latency"), value_text((*time)["rays"])) +
+         Figure{.id = "fig-ray-time",
+                .kind = "bars",
+                .tables = bars.id,
+                .title = bars.caption,
+                .label = "Bars: cycles a ray in each stage, longest first.",
+                .height = bars_height(bars),
+                .still = still_bars(bars, 1)}
+             .html() +
          bars.html() + kinds.html();
 }
 

@@ -118,8 +118,10 @@ std::string stress_page(const Json& stress) {
                                                                 : fmt::format("Faults of queues: {}.", which));
   if (const std::string verdict = text_at(stress, "ring_verdict"); !verdict.empty())
     glance += markup("<p>{}</p>\n", verdict);
-  glance += markup("<p>{} repetitions on a host of {} hardware threads. Rates of queues are the host's.</p>\n",
-                   number_at(stress, "repetitions"), number_at(stress, "cores"));
+  glance +=
+      markup("<p>{}</p>\n",
+             singular(fmt::format("{} repetitions on a host of {} hardware threads. Rates of queues are the host's.",
+                                  number_at(stress, "repetitions"), number_at(stress, "cores"))));
   return page_of("Carousel: stress of queues", "carousel stress",
                  {{"verdict", "At a glance", glance},
                   {"alone", "Queues by themselves", bars_of(rows, rows.caption)},
@@ -151,7 +153,8 @@ std::string versus_page(const Json& versus) {
                     .html();
   Html glance;
   for (std::size_t i = 0; i < versus["lines"].size(); ++i)
-    glance += markup("<p class=\"{}\">{}</p>\n", i == 0 ? "verdict" : "detail", versus["lines"][i].get<std::string>());
+    glance += markup("<p class=\"{}\">{}</p>\n", i == 0 ? "verdict" : "detail",
+                     capital(versus["lines"][i].get<std::string>()));
   Html twin = markup("<p>The twin is this machine with these keys:</p>\n<ul>\n");
   for (const Json& set : versus["twin_sets"]) twin += markup("<li><code>{}</code></li>\n", set.get<std::string>());
   twin += markup("</ul>\n");

@@ -126,6 +126,42 @@ TEST(VersusRatio, IsOfPairs) {
   EXPECT_FALSE(one.low);
   EXPECT_FALSE(one.surely_more());
   EXPECT_TRUE(report::versus_ratio({3, 3}, {2, 2}).surely_more());
+  // On every host, with the series of core/numeric summed by hand; correct rounding ends in b.
+  EXPECT_EQ(report::versus_ratio({5}, {3}).ratio, 0x1.aaaaaaaaaaaacp+0);
+}
+
+TEST(VersusLines, HaveOneOfAThingInTheSingularAndWideIntervalsByTheirEnds) {
+  report::Versus v;
+  v.seeds = 1;
+  v.machines = {{.name = "machine", .resources = 4},
+                {.name = "twin", .resources = 4},
+                {.name = "twin_at_equal_area", .resources = 1, .mm2 = 2}};
+  v.against = {{.than = "twin", .verdict = "alike", .speed = {0.8, 0.25, 3.125}},
+               {.than = "twin_at_equal_area", .verdict = "faster", .speed = {2, 1.5, 2.5}}};
+  const std::vector<std::string> lines = report::versus_lines(v);
+  EXPECT_THAT(lines[0], HasSubstr("alike: 0.800 (0.25 to 3.125) times as fast"));
+  EXPECT_THAT(lines[0], HasSubstr(", 1 seed"));
+  EXPECT_THAT(lines[2], HasSubstr("2.000 ± 0.500 times as fast: the twin has 1 resource in 2 mm2"));
+}
+
+// Everything that has a key is charged on both sides.
+TEST(VersusCommand, ChargesBothMachines) {
+  const Program program;
+  program.write("a.yaml", kRing);
+  const auto json = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), {"versus", "a.yaml", "--seeds", "1", "--no-search", "--force", "--out", "o"});
+    const Outcome outcome = program.run(more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return Json::parse(program.read("o/versus.json"));
+  };
+  const Json base = json({}), all = json({"--charge-all"});
+  ASSERT_EQ(base["runs"].size(), all["runs"].size());
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_GT(all["runs"][i]["cycles"], base["runs"][i]["cycles"]) << i;
+    EXPECT_EQ(all["runs"][i]["image"], base["runs"][i]["image"]);
+  }
+  EXPECT_THAT(program.read("o/config.resolved.yaml"), HasSubstr("film: memory"));
+  EXPECT_THAT(all["twin_sets"].dump(), testing::Not(HasSubstr("memory.film")));
 }
 
 }  // namespace

@@ -72,6 +72,24 @@ TEST(RunPageText, TellsWhenPowerIsHighest) {
                                       "mean of the run. There DRAM takes 50.0 % of it."));
 }
 
+TEST(RunPageText, LeavesKeysOfAVerdictAsTheyAre) {
+  Json report = small_run();
+  report["bottleneck"] = {{"limits", ""},
+                          {"verdict", "no class: half memory.l2_latency_cycles gains, and l2_port does not"},
+                          {"gains", Json::array()}};
+  EXPECT_THAT(page(report), HasSubstr("No class: half memory.l2_latency_cycles gains, and L2 port does not."));
+}
+
+TEST(RunPageText, DrawsWhereTheCyclesOfRaysGo) {
+  Json report = small_run();
+  report["ray_time"] = {{"rays", 100}, {"latency", 40.0}, {"cycles", 4000}, {"collection", 3000}, {"test", 1000}};
+  report["ray_time"]["by_kind"] = Json::array();
+  const std::string text = page(report);
+  EXPECT_THAT(text, HasSubstr("fig-ray-time"));
+  EXPECT_LT(text.find("<span>collection</span>"), text.find("<span>test</span>")) << "also without scripts";
+  EXPECT_NE(text.find("<span>collection</span>"), text.npos);
+}
+
 TEST(RunPageText, HasTheTwinBesideTheAnswersOfTheSameMachineOnly) {
   Json versus = {{"against",
                   {{{"than", "twin"},

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "report/text/number_text.h"
+#include "report/text/table_lines.h"
 #include "tests/report/run/sample_report.h"
 
 namespace carousel::report {
@@ -32,6 +33,33 @@ TEST(ReportTable, SaysWhatHappened) {
   EXPECT_THAT(table, HasSubstr("verify       990 rays traced again, 1 mismatches; pixel 3\n"));
   EXPECT_THAT(table, HasSubstr("digest       hits 0123   image 4567\n"));
   EXPECT_THAT(table, Not(HasSubstr("INCOMPLETE")));
+}
+
+TEST(ReportTable, SaysNothingOfPacketsWhereThereAreNone) {
+  Report report = sample_report();
+  report.packets->counts = {};
+  report.collections->counts = {};
+  for (Resource& r : *report.resources) r.counts.packets_issued = 0;
+  const std::string table = report_table(report);
+  for (const char* name : {"packets issued", "packets seen", "\npackets  ", "\ncollections  "})
+    EXPECT_THAT(table, Not(HasSubstr(name)));
+  EXPECT_THAT(table, HasSubstr("box tests"));
+}
+
+TEST(ReportTable, BreaksLongListsAtTheirItems) {
+  Report report = sample_report();
+  report.charges.emplace();
+  for (int i = 0; i < 30; ++i) report.charges->push_back({fmt::format("charge_{}", i), "free"});
+  Table table;
+  wrapped_lines(table, "list", "aaa, bbb", ", ");
+  EXPECT_EQ(table.take(), "list         aaa, bbb\n");
+  const std::string text = report_table(report);
+  const std::size_t at = text.find("not charged  charge_0, charge_1,");
+  ASSERT_NE(at, text.npos);
+  const std::string first = text.substr(at, text.find('\n', at) - at);
+  EXPECT_LE(first.size(), 114u);
+  EXPECT_EQ(first.back(), ',');
+  for (int i = 0; i < 30; ++i) EXPECT_THAT(text, HasSubstr(fmt::format("charge_{}", i)));
 }
 
 // The last row is a packet process, which issues for the resource that it serves.

@@ -33,6 +33,16 @@ class Table {
   std::string out_;
 };
 
+/// A text on lines of some 110 columns, parted at `separator`. The first begins with a name.
+inline void wrapped_lines(Table& table, std::string_view name, std::string_view text, std::string_view separator) {
+  for (; !text.empty(); name = "") {
+    const std::size_t at = text.size() <= 100 ? text.npos : text.rfind(separator, 100);
+    const std::size_t mark = separator.find_last_not_of(' ') + 1;  // a comma stays at the end of its line
+    table.line(name, "{}", text.substr(0, at == text.npos ? at : at + mark));
+    text.remove_prefix(at == text.npos ? text.size() : at + separator.size());
+  }
+}
+
 /// Names with values, side by side on one line.
 class Items {
  public:
@@ -41,14 +51,7 @@ class Items {
   }
   const std::string& text() const { return text_; }
 
-  /// On lines of some 110 columns, the first of which begins with a name.
-  void lines(Table& table, std::string_view name) const {
-    for (std::string_view rest = text_; !rest.empty(); name = "") {
-      const std::size_t end = std::min(rest.size() <= 100 ? rest.size() : rest.rfind("   ", 100), rest.size());
-      table.line(name, "{}", rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 3, rest.size()));
-    }
-  }
+  void lines(Table& table, std::string_view name) const { wrapped_lines(table, name, text_, "   "); }
 
  private:
   std::string text_;
