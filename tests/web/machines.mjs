@@ -9,7 +9,7 @@ export const pages = {
   // `drawn`: charts that must be there; others are left out where there is too little to show.
   machine: {...machine('demo', [...cycle, 'image.width=16', 'engine.what_if=true', 'topology.resources=2', 'rays.slots_per_resource=4', 'cull_planes.count=2',
     'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'energy.profile=n45']),
-    drawn: ['fig-energy', 'fig-area']},
+    drawn: ['fig-energy', 'fig-area', 'fig-ray-time']},
   native: machine('bundle_tester', [...small, 'engine.kind=native', 'primary=raster']),
   ranks: {...machine('demo', [...small, 'engine.kind=native', 'engine.threads=2', 'engine.transport=mpi', 'topology.resources=6']),
     ranks: 3},
@@ -20,7 +20,7 @@ export const pages = {
     options: ['--seconds', '0.05', '--messages', '500', '--repetitions', '1', '--pairs', '0', '--queue', 'spsc_ring,mutex',
       '--pattern', 'stream,ping_pong', '--depths', '4']},
   sweep: {command: 'sweep', config: 'sweep', sets: ['image.width=8', 'image.height=8'],
-    options: ['--vary', 'topology.resources=2,4', '--vary', 'memory.l2_kib=16,64']},
+    options: ['--vary', 'topology.resources=2,4', '--vary', 'memory.l2_kib=16,64', '--pareto', 'cycles,bytes']},
   frames: {...machine('moving_scene', ['image.width=16', 'image.height=12', 'frames.count=3', 'scene.instances=40',
     'engine.what_if=false']), drawn: ['fig-frame-cycles', 'fig-frame-tests']},
   life: {command: 'follow', config: 'demo', sets: cycle, options: ['--pixel', '12,8']},

@@ -27,7 +27,12 @@ function shown() {
       columns: [...table.tHead.rows[0].cells].map((c) => c.firstChild.textContent.trim()),
       rows: [...table.tBodies[0].rows].map((r) => [...r.cells].map((c) => (c.dataset.v === undefined ? c.textContent : Number(c.dataset.v)))),
     };
-  return {tables, wide: document.documentElement.scrollWidth - innerWidth};
+  const cut = [...document.querySelectorAll('.plot svg text')].filter((text) => {
+    if (text.closest('[clip-path]')) return false;  // of a legend with pages
+    const own = text.getBoundingClientRect(), plot = text.closest('.plot').getBoundingClientRect();
+    return own.width > 0 && (own.left < plot.left - 3 || own.right > plot.right + 3 || own.bottom > plot.bottom + 3);
+  }).map((text) => text.textContent);
+  return {tables, cut, wide: document.documentElement.scrollWidth - innerWidth};
 }
 
 async function drawn() {
@@ -72,11 +77,12 @@ const open = (browser, file, options) => browser.newContext(options).then(async 
 /** Charts, tables and width as they are now. */
 async function check(where, page, command, json) {
   const {charts, figures} = await page.evaluate(drawn);
-  const {tables, wide} = await page.evaluate(shown);
+  const {tables, cut, wide} = await page.evaluate(shown);
   if (Object.keys(charts).length !== figures) fault(where, `${figures} figures and ${Object.keys(charts).length} charts`);
   if (figures === 0) fault(where, 'no charts');
   for (const [id, {marks, items}] of Object.entries(charts)) if (marks < 3 || items === 0) fault(where, `${id} has no marks`);
   for (const id of all[where.split(',')[0]].drawn ?? []) if (!charts[id]) fault(where, `${id} is not drawn`);
+  if (cut.length) fault(where, `cut at the edge of a chart: ${cut.slice(0, 4).join('; ')}`);
   if (wide > 0) fault(where, `the page is ${wide} pixels wider than the window`);
   const wrong = command === 'run' ? [...wrongTables(tables, json), ...wrongCharts(charts, json)]
     : wrongStudy(command, {tables, charts}, json);

@@ -93,7 +93,7 @@ function tableOf(results) {
   for (const result of results) {
     const row = body.insertRow();
     row.insertCell().textContent = result;
-    for (let i = 0; i < 2; ++i) row.insertCell().className = 'number';
+    for (let i = 0; i < 2; ++i) row.insertCell().className = 'n';
   }
   const fill = (column, values) => {
     for (const [i, value] of values.entries()) {
@@ -166,7 +166,9 @@ export function between({sweep}) {
     return;
   }
   const at = scales.map(({values}) => values[0]);
-  const {table: answers, fill} = tableOf(results);
+  const {table: answers, fill} = tableOf(results), scroll = document.createElement('div');
+  scroll.className = 'scroll';
+  scroll.append(answers);
   const keysOf = () => {
     const keys = Object.fromEntries(scales.map(({key}, i) => [key, at[i]]));
     const seed = table.column(kSeed);
@@ -182,6 +184,6 @@ export function between({sweep}) {
   place.append(...scales.map((scale, i) => controlOf(scale, (value) => {
     at[i] = value;
     tell();
-  })), ...(ask ? [ask.row] : []), answers);
+  })), ...(ask ? [ask.row] : []), scroll);
   tell();
 }

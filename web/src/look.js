@@ -89,10 +89,13 @@ export function numberAxis(colours, values, more = {}, wide = 20) {
     axisLabel: {showMinLabel: false, showMaxLabel: false, ...more.axisLabel}});
 }
 
-/** An axis of names, first at the top. Long names are cut where the chart is narrow. */
+/** An axis of names, first at the top. Long names take two lines where the chart is narrow. */
 export function names(colours, list, width) {
+  const most = Math.max(90, Math.min(300, width * 0.3));
+  const long = Math.max(...list.map((name) => String(name).length)) * 6.8 > most;
   return axis(colours, {
     type: 'category', data: list, inverse: true, axisTick: {show: false}, splitLine: {show: false},
-    axisLabel: {width: Math.max(90, Math.min(300, width * 0.3)), overflow: 'truncate', interval: list.length > 40 ? 'auto' : 0},
+    axisLabel: {interval: list.length > 40 ? 'auto' : 0, ...(width < 600 ? {fontSize: 10} : {}),
+      ...(long ? {width: most, overflow: 'break', lineHeight: 11, lineOverflow: 'truncate', height: 24} : {})},
   });
 }

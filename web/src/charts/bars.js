@@ -48,7 +48,7 @@ export function intervals({tables: [table], colours, width}) {
     series: [
       {type: 'bar', name: 'gain', barMaxWidth: 20, data: rows.map((r) => ({value: clamped(r[gain]),
         itemStyle: {color: r[gain] < 0 ? kWorse : kBetter, opacity: r[together] > 1 ? 0.6 : 1},
-        label: {show: r[gain] < least, position: 'insideLeft', color: '#000', formatter: `◀ ${text(r[gain])}`}}))},
+        label: {show: r[gain] < least, position: 'insideLeft', color: '#000', backgroundColor: kWorse, padding: [0, 3], formatter: `◀ ${text(r[gain])}`}}))},
       {
         type: 'custom', name: 'interval', silent: true, z: 5, data: rows.map((r, i) => [clamped(r[low]), clamped(r[high]), i]),
         encode: {x: [0, 1], y: 2},

@@ -52,8 +52,10 @@ export function ratios(context) {
   const ticks = (wide ? [1 / 64, 1 / 16, 1 / 8, 1 / 4, 1 / 2, 1, 2, 4, 8, 16, 64] : [0.5, 0.7, 0.8, 0.9, 1, 1.1, 1.25, 1.5, 2, 3, 4])
     .map(Math.log2).filter((v) => v >= ends[0] - 0.2 && v <= ends[1] + 0.2);
   // Less is better but for rates and hits; other counts say neither.
-  const side = (name, v) => {
-    const greater = /^(rays|mrays|hit|steady|reached|throughput)|per (kilocycle|second|joule|mm)|rays\/s|Mrays|hit fraction/i.test(name);
+  const unit = table.columns.indexOf('unit');
+  const side = (row, v) => {
+    const name = `${row[0]}, ${row[unit]}`;
+    const greater = /^(mrays|hit|steady|reached|throughput)|per (kilocycle|second|joule|mm)|rays\/|hit fraction/i.test(name);
     const smaller = /cycle|joule|nJ|bytes|latency|tests|waits?|stall|second|time|area|mm/i.test(name);
     if (!greater && !smaller) return undefined;
     return (v > 0) === greater ? kBetter : kWorse;
@@ -63,7 +65,7 @@ export function ratios(context) {
   return grouped(context, rows.map((r) => r[0]), columns.map(([name, c]) => ({
     name, data: rows.map((r) => {
       const value = typeof r[c] === 'number' ? clamped(r[c]) : null;
-      return columns.length === 1 && value ? {value, itemStyle: {color: side(r[0], value) ?? kHues[0]}} : value;
+      return columns.length === 1 && value ? {value, itemStyle: {color: side(r, value) ?? kHues[0]}} : value;
     }), text: ({value}) => (value == null ? '' : times(value)),
   })), {type: 'value', name: 'times as much as A', splitLine: {show: false}, axisLabel: {formatter: times, customValues: ticks, hideOverlap: true},
     axisTick: {customValues: ticks}},

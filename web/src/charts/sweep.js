@@ -98,6 +98,7 @@ export function sweepPareto({tables: [table], facts, colours, width, a, b, bette
     .map((row) => ({value: [row[ca], row[cb]], point: row[0], row}));
   const best = front(points, [better(a, betterA) === 'greater', better(b, betterB) === 'greater']);
   const turn = knee(best);
+  const across = points.map((p) => p.value[0]), middle = Math.sqrt(Math.min(...across) * Math.max(...across));
   const option = {
     ...base(colours),
     grid: {left: 20, right: 40, top: 60, bottom: 44, containLabel: true},
@@ -108,7 +109,7 @@ export function sweepPareto({tables: [table], facts, colours, width, a, b, bette
       {name: 'all points', type: 'scatter', data: points, symbolSize: 9, itemStyle: {color: kHues[4], opacity: 0.7}},
       {name: 'Pareto front', type: 'line', data: best, symbolSize: 11, itemStyle: {color: kHues[5]}, lineStyle: {color: kHues[5]}},
       ...(turn ? [{name: 'knee', type: 'scatter', data: [turn], symbol: 'diamond', symbolSize: 20, itemStyle: {color: kHues[2]}, z: 5,
-        label: {show: true, position: 'right', distance: 10, color: colours.ink, backgroundColor: colours.page, padding: 1, formatter: () => facts.sweep.keys.map((key) => `${key.split('.').at(-1)} ${turn.row[table.column(key)]}`).join(', ')}}] : []),
+        label: {show: true, position: turn.value[0] > middle ? 'left' : 'right', distance: 10, width: width * 0.35, overflow: 'break', color: colours.ink, backgroundColor: colours.page, padding: 1, formatter: () => facts.sweep.keys.map((key) => `${key.split('.').at(-1)} ${turn.row[table.column(key)]}`).join(', ')}}] : []),
     ],
   };
   const sides = ['as the result', 'smaller', 'greater'];
