@@ -30,7 +30,7 @@ class LifeBuilder {
     life_.begin = made->end;
     life_.complete = shaded != nullptr;
     life_.end = shaded != nullptr ? shaded->end : std::max(life_.begin, trips_.end);
-    in_ring_ends_ = done != nullptr ? done->at : life_.end;
+    in_ring_ends_ = slot_ends_ = done != nullptr ? done->at : life_.end;
     if (shaded != nullptr) life_.hit = shaded->hit;
     placing();
     for (const RayFact& fact : facts_) {
@@ -179,6 +179,7 @@ class LifeBuilder {
       for (const LifeSpan& span : spans_)
         if (span.begin <= begin && span.end >= end && (best == nullptr || span.stage < best->stage)) best = &span;
       LifeSpan one = best != nullptr ? *best : LifeSpan{};
+      if (best == nullptr && life_.resource && end <= slot_ends_) one.part = resource_text(*life_.resource);
       one.begin = begin;
       one.end = end;
       begin = end;
@@ -195,7 +196,7 @@ class LifeBuilder {
   const Timeline& trips_;
   const accel::Accel& accel_;
   RayLife life_;
-  std::uint64_t in_ring_ends_ = 0, last_test_ends_ = 0;
+  std::uint64_t in_ring_ends_ = 0, slot_ends_ = 0, last_test_ends_ = 0;
   Hit nearest_{};
   std::vector<LifeSpan> spans_;
 };
@@ -218,7 +219,7 @@ std::string_view stage_text(LifeStage stage) {
                                                     "on its way to shading",
                                                     "waits for a shader worker",
                                                     "is shaded",
-                                                    "waits for an answer"};
+                                                    "waits for its warp or an answer"};
   return kTexts[static_cast<std::size_t>(stage)];
 }
 

@@ -30,7 +30,7 @@ enum class LifeStage : std::uint8_t {
   kReturn,      ///< its hit is on its way to shading
   kShadeQueue,  ///< its hit waits for a shader worker
   kShading,     ///< its hit is shaded
-  kOther,       ///< it waits for something else, such as the opacity of what it hit
+  kOther,       ///< it waits for something else, such as other rays of its warp, or the opacity of what it hit
 };
 std::string_view stage_text(LifeStage stage);
 

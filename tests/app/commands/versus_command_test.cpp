@@ -141,6 +141,8 @@ TEST(VersusLines, HaveOneOfAThingInTheSingularAndWideIntervalsByTheirEnds) {
   const std::vector<std::string> lines = report::versus_lines(v);
   EXPECT_THAT(lines[0], HasSubstr("alike: 0.800 (0.25 to 3.125) times as fast"));
   EXPECT_THAT(lines[0], HasSubstr(", 1 seed"));
+  v.against.front().speed = {0.8};
+  EXPECT_THAT(report::versus_lines(v)[0], HasSubstr("unsure: 0.800 times as fast"));
   EXPECT_THAT(lines[2], HasSubstr("2.000 ± 0.500 times as fast: the twin has 1 resource in 2 mm2"));
 }
 

@@ -131,6 +131,24 @@ TEST(RayLife, IsItsLatencyOnAnyMachine) {
   }
 }
 
+// A ray of a warp waits in its resource for the slowest of them, between its tests and behind the last.
+TEST(RayLife, OfAWarpWaitsForTheOthersInItsResource) {
+  const Followed f =
+      follow(frame("topology: {resources: 2, shape: independent}\ntesters: {simt: {warp: 16, warps: 3}}\n"),
+             RayPlace{40, 1, RayKind::kCamera, 0, 0});
+  ASSERT_TRUE(f.life && f.life->resource);
+  std::uint64_t now = f.life->begin, waits = 0;
+  for (const LifeSpan& span : f.life->spans) {
+    EXPECT_EQ(span.begin, now);
+    now = span.end;
+    if (span.stage != LifeStage::kOther) continue;
+    waits += span.end - span.begin;
+    EXPECT_EQ(span.part, "resource " + std::to_string(*f.life->resource));
+  }
+  EXPECT_EQ(now, f.life->end);
+  EXPECT_GT(waits, 0u);
+}
+
 // A packet of a block of memory names none of the nodes that its rays are at.
 TEST(RayLife, HasTheRaysOwnNodesOfABlock) {
   std::size_t tests = 0;
