@@ -17,7 +17,6 @@
 #include "accel/certificate/properties.h"
 #include "accel/certificate/triangle_cases.h"
 #include "accel/certificate/triangle_oracle.h"
-#include "accel/traverse/ray_check.h"
 #include "core/numeric/rounding.h"
 
 namespace carousel::accel {
@@ -51,11 +50,10 @@ struct DistanceBound {
 
 void judge_distance(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
                     CaseStory* story) {
-  CaseReader read(values);
-  const Ray ray = read.ray();
-  const bool finite = read.rest_is_finite();
-  const Corners corners{read.vector(), read.vector(), read.vector()};
-  if (!valid(ray) || !std::isfinite(ray.tmin) || !finite) return;
+  const std::optional<TriangleCase> judged = judged_triangle(values);
+  if (!judged) return;
+  const Ray& ray = judged->ray;
+  const Corners& corners = judged->corners;
   const TriangleOracle oracle(ray, corners);
   if (!oracle.hit() || oracle.compare_t(ray.tmin) < 0 || oracle.compare_t(std::min(ray.tmax, 0x1.fffffep127f)) > 0)
     return;
@@ -68,11 +66,9 @@ void judge_distance(const CaseValues& values, std::span<const AccuracyConfig> le
     const Hit hit = leaf.hit(ray, level);
     if (story != nullptr) *story = {text(hit), fmt::format("t = {:.17g}, within {:.3g}", oracle.t(), bound.off)};
     if (!hit.valid()) continue;
-    const float size = std::fabs(static_cast<float>(oracle.t()));
-    const double off = std::fabs(hit.t - oracle.t());
     out[i].applies = true;
-    out[i].broken = !(off <= bound.off);
-    out[i].error = off / (double{std::nextafter(size, kInfinity)} - size);
+    out[i].broken = !(std::fabs(hit.t - oracle.t()) <= bound.off);
+    out[i].error = ulps_between(hit.t, oracle.t());
   }
 }
 

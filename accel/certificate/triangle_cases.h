@@ -2,10 +2,13 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
+#include <optional>
 
 #include "accel/certificate/adversarial_numbers.h"
 #include "accel/certificate/case_random.h"
 #include "accel/certificate/case_values.h"
+#include "accel/traverse/ray_check.h"
 #include "core/types/ray.h"
 
 namespace carousel::accel {
@@ -15,6 +18,21 @@ struct TriangleCase {
   Ray ray;
   std::array<Vec3, 3> corners;
 };
+
+/// The ray and the triangle of a case's numbers; absent where they promise nothing, as numbers are not finite.
+inline std::optional<TriangleCase> judged_triangle(const CaseValues& values) {
+  CaseReader read(values);
+  const Ray ray = read.ray();
+  const bool finite = read.rest_is_finite();
+  const TriangleCase out{ray, {read.vector(), read.vector(), read.vector()}};
+  return valid(ray) && std::isfinite(ray.tmin) && finite ? std::optional(out) : std::nullopt;
+}
+
+/// How many units of the last place of the exact number, as a float, another one is off.
+inline double ulps_between(float got, double exact) {
+  const float size = std::fabs(static_cast<float>(exact));
+  return std::fabs(got - exact) / (double{std::nextafter(size, std::numeric_limits<float>::infinity())} - size);
+}
 
 enum class TriangleCaseKind {
   kRandom,

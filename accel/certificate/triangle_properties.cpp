@@ -10,7 +10,6 @@
 #include "accel/certificate/triangle_cases.h"
 #include "accel/certificate/triangle_oracle.h"
 #include "accel/exact/exact_triangle.h"
-#include "accel/traverse/ray_check.h"
 
 namespace carousel::accel {
 
@@ -32,11 +31,6 @@ struct Range {
   }
 };
 
-double ulps(float got, double exact) {
-  const float size = std::fabs(static_cast<float>(exact));
-  return std::fabs(got - exact) / (double{std::nextafter(size, kInfinity)} - size);
-}
-
 std::string described(const TriangleOracle& oracle) {
   if (!oracle.hit()) return "not crossed";
   return fmt::format("crossed at t = {:.17g}, u = {:.17g}, v = {:.17g}", oracle.t(), oracle.u(), oracle.v());
@@ -44,11 +38,10 @@ std::string described(const TriangleOracle& oracle) {
 
 void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> levels, std::span<Judgement> out,
                     CaseStory* story) {
-  CaseReader read(values);
-  const Ray ray = read.ray();
-  const bool finite = read.rest_is_finite();
-  const Corners corners{read.vector(), read.vector(), read.vector()};
-  if (!valid(ray) || !std::isfinite(ray.tmin) || !finite) return;
+  const std::optional<TriangleCase> judged = judged_triangle(values);
+  if (!judged) return;
+  const Ray& ray = judged->ray;
+  const Corners& corners = judged->corners;
   const TriangleOracle oracle(ray, corners);
   const Range range(oracle, ray);
   OneLeaf leaf({&corners, 1});
@@ -60,7 +53,7 @@ void judge_triangle(const CaseValues& values, std::span<const AccuracyConfig> le
     Judgement& judgement = out[i];
     judgement.applies = !range.at_an_end;
     judgement.broken = !range.at_an_end && hit.valid() != range.inside;
-    if (hit.valid() && range.inside) judgement.error = ulps(hit.t, oracle.t());
+    if (hit.valid() && range.inside) judgement.error = ulps_between(hit.t, oracle.t());
     if (story != nullptr) *story = {text(hit), described(oracle)};
     if (level.triangle != TriangleLevel::kExact) continue;
     NearestCrossing crossing{};

@@ -125,4 +125,17 @@ std::vector<RaySet> make_ray_sets(const scene::Scene& scene, const accel::Accel&
   return sets;
 }
 
+HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
+  HitList hits;
+  hits.reserve(rays.size);
+  HitBatch found;
+  IntersectionCounts counts;
+  for (const RayBatch& batch : rays.batches) {
+    found.clear();
+    accel::trace_depth_first(accel, batch, found, counts);
+    for (const RayResult& result : found) hits.push_back(result.hit);
+  }
+  return hits;
+}
+
 }  // namespace carousel::bench

@@ -31,6 +31,9 @@ struct RaySet {
 /// One hit a ray, by RayTag::path.
 using HitList = std::vector<Hit>;
 
+/// Of a depth-first tracer.
+HitList reference_hits(const accel::Accel& accel, const RaySet& rays);
+
 /// The ray sets of a scene:
 /// - primary: through every pixel of a square image, tile by tile along a Z curve;
 /// - shadow: any hit, from each primary hit to the scene's first light, in the same order;

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "accel/traverse/reference_tracer.h"
 #include "bench/common/list_workload.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/traffic/traffic_engine.h"
@@ -44,18 +43,6 @@ RayCase ray_case(std::int64_t resources, Traversal traversal, std::size_t thread
   c.memory.dram.preset = preset;
   if (preset != DramConfig::Preset::kPipe) out.name += fmt::format(", {}", enum_name(preset));
   return out;
-}
-
-HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
-  HitList hits;
-  HitBatch found;
-  IntersectionCounts counts;
-  for (const RayBatch& batch : rays.batches) {
-    found.clear();
-    accel::trace_depth_first(accel, batch, found, counts);
-    for (const RayResult& result : found) hits.push_back(result.hit);
-  }
-  return hits;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include "accel/traverse/reference_tracer.h"
 #include "core/numeric/digest.h"
 
 namespace carousel::bench {
@@ -13,19 +12,6 @@ namespace {
 
 /// A contestant that takes longer is run once.
 constexpr double kLongRunSeconds = 5;
-
-HitList reference_hits(const accel::Accel& accel, const RaySet& rays) {
-  HitList hits;
-  hits.reserve(rays.size);
-  HitBatch found;
-  IntersectionCounts counts;
-  for (const RayBatch& batch : rays.batches) {
-    found.clear();
-    accel::trace_depth_first(accel, batch, found, counts);
-    for (const RayResult& result : found) hits.push_back(result.hit);
-  }
-  return hits;
-}
 
 bool same(const Hit& a, const Hit& b) {
   const auto bits = [](float x) { return std::bit_cast<std::uint32_t>(x); };
