@@ -26,11 +26,11 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-inline constexpr std::uint32_t kStreamRays = 512;     ///< rays under way together; more are taken in turns
-inline constexpr std::uint32_t kStreamRoom = 32'768;  ///< places in lists
-inline constexpr std::uint32_t kFewRays = 8;          ///< a shorter list is not split
-inline constexpr std::uint32_t kFewRaysOfLeaf = 3;    ///< a shorter list is tested ray by ray
-inline constexpr std::uint32_t kLaterRays = 32;       ///< rays of short lists that wait for one another
+inline constexpr std::uint32_t kStreamRays = 2048;     ///< rays under way together; more are taken in turns
+inline constexpr std::uint32_t kStreamRoom = 131'072;  ///< places in lists
+inline constexpr std::uint32_t kFewRays = 8;           ///< a shorter list is not split
+inline constexpr std::uint32_t kFewRaysOfLeaf = 3;     ///< a shorter list is tested ray by ray
+inline constexpr std::uint32_t kLaterRays = 32;        ///< rays of short lists that wait for one another
 
 #if HWY_MAX_BYTES >= 64
 

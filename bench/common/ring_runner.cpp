@@ -52,6 +52,8 @@ void change(RingSettings& s, std::string_view key, std::string_view value) {
     s.select = choice<Select>(key, value);
   else if (key == "lanes")
     s.lanes = choice<Lanes>(key, value);
+  else if (key == "sort")
+    s.sort = choice<RaySort>(key, value);
   else if (key == "queue")
     s.queue = choice<QueueKind>(key, value);
   else
@@ -80,6 +82,7 @@ Config ring_config(const RingSettings& settings, const RingForm& form, int threa
   config.topology.link.depth = settings.link_depth;
   config.topology.link.queue = settings.queue;
   config.rays.slots_per_resource = settings.slots;
+  config.rays.sort = settings.sort;
   config.packets.rays = settings.packet_rays;
   config.collections.ready = settings.ready;
   config.collections.capacity = settings.capacity;

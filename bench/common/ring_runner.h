@@ -20,12 +20,13 @@ struct RingSettings {
   std::int64_t link_depth = 16;            ///< topology.link.depth
   Policy policy = Policy::kNearest;
   Select select = Select::kStrict;
-  Lanes lanes = Lanes::kAuto;  ///< engine.lanes
+  Lanes lanes = Lanes::kAuto;     ///< engine.lanes
+  RaySort sort = RaySort::kNone;  ///< rays.sort
   QueueKind queue = QueueKind::kSpscRing;
 };
 
 /// Changes settings by the text "key=value;key=value", with the names of bench_rays' flags as keys: slots,
-/// packet-rays, ready, capacity, treelet, link-depth, policy, select, lanes, queue. Throws ConfigError.
+/// packet-rays, ready, capacity, treelet, link-depth, policy, select, lanes, sort, queue. Throws ConfigError.
 RingSettings with_changes(RingSettings settings, const std::string& changes);
 
 /// One configuration of the ring.

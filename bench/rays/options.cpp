@@ -16,6 +16,7 @@ std::map<std::string, std::string> Options::describe() const {
           {"collections.select", std::string(enum_name(ring.select))},
           {"bvh.treelet_triangles", std::to_string(ring.treelet_triangles)},
           {"engine.lanes", std::string(enum_name(ring.lanes))},
+          {"rays.sort", std::string(enum_name(ring.sort))},
           {"bvh.leaf_triangles", std::to_string(bvh.leaf_triangles)},
           {"bvh.merge", std::string(enum_name(bvh.merge))},
           {"bvh.quality", std::string(enum_name(bvh.quality))},
@@ -82,6 +83,7 @@ std::optional<Options> parse_options(int argc, char** argv, int& exit_status) {
   add_enum(app, "--policy", o.ring.policy, "collections.policy");
   add_enum(app, "--select", o.ring.select, "collections.select");
   add_enum(app, "--lanes", o.ring.lanes, "engine.lanes");
+  add_enum(app, "--sort", o.ring.sort, "rays.sort");
   add_enum(app, "--queue", o.ring.queue, "topology.link.queue");
   app.add_option("--json", o.json, "write the results here");
   app.add_option("--markdown", o.markdown, "write the tables between the markers of these documents");

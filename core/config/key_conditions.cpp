@@ -88,6 +88,7 @@ constexpr Row kRows[] = {
     {"topology.tour", kTravel},
     {"topology.link.virtual_channels", kChannels},
     {"topology.channels", kChannels},
+    {"rays.sort", kNative},
     {"rays.reads_per_cycle", kCycle},
     {"rays.banks", kCycle},
     {"rays.query.hits", kList},

@@ -76,7 +76,7 @@ void NativeParts::build() {
   for (std::uint32_t w = 0; w < static_cast<std::uint32_t>(shader_workers(config_)); ++w)
     workers_.push_back(std::make_unique<ShaderWorker>(WorkerId(w), machine_->shared.control, machine_->completed,
                                                       workload_, count_, slots, shader_workers(config_),
-                                                      ledger_.get()));
+                                                      config_.rays.sort, ledger_.get()));
 }
 
 NativeParts::Step NativeParts::step(std::size_t thread) {

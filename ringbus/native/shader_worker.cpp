@@ -7,12 +7,15 @@
 namespace carousel::ringbus {
 
 namespace {
-// Rays generated at once: few enough that they are still in cache when ray control puts them into their slots.
+// Rays generated, or handed over in order, at once: few enough that they are still in cache when ray control puts them
+// into their slots.
 constexpr std::int64_t kGenerateBatch = 4096;
+constexpr std::size_t kSubmitBatch = kGenerateBatch;
 }  // namespace
 
 ShaderWorker::ShaderWorker(WorkerId id, RayControl& control, CompletedQueue& completed, Workload& workload,
-                           RayCount& count, std::int64_t slots, std::int64_t workers, OutstandingRays* ledger)
+                           RayCount& count, std::int64_t slots, std::int64_t workers, RaySort sort,
+                           OutstandingRays* ledger)
     : id_(id),
       control_(control),
       completed_(completed),
@@ -20,11 +23,35 @@ ShaderWorker::ShaderWorker(WorkerId id, RayControl& control, CompletedQueue& com
       count_(count),
       ledger_(ledger),
       slots_(slots),
-      workers_(workers) {}
+      workers_(workers) {
+  if (sort == RaySort::kCells) sorter_.emplace();
+}
 
 bool ShaderWorker::step() {
   const bool placed = control_.place_waiting();
-  return shade() || generate() || placed;
+  return shade() || submit_gathered() || generate() || placed;
+}
+
+/// Hands the rays over that wait to be sorted.
+bool ShaderWorker::submit_gathered() {
+  if (gathered_.empty()) return false;
+  sorter_->order(gathered_);
+  for (std::size_t begin = 0; begin < gathered_.size(); begin += kSubmitBatch) {
+    rays_.clear();
+    sorter_->copy(gathered_, begin, std::min(begin + kSubmitBatch, gathered_.size()), rays_);
+    schedule_point();
+    control_.submit(rays_);
+  }
+  gathered_.clear();
+  return true;
+}
+
+/// Hands new rays over, or keeps them for others that they are sorted with.
+void ShaderWorker::hand_over() {
+  if (sorter_)
+    gathered_.insert(gathered_.end(), rays_.begin(), rays_.end());
+  else if (!rays_.empty())
+    control_.submit(rays_);
 }
 
 bool ShaderWorker::shade() {
@@ -49,7 +76,7 @@ bool ShaderWorker::shade() {
   batch->clear();
   completed_.give_back(batch);
   schedule_point();
-  if (made > 0) control_.submit(rays_);
+  hand_over();
   return true;
 }
 
@@ -57,6 +84,7 @@ bool ShaderWorker::generate() {
   // Acquire: pairs with the release below, and is only a hint here.
   if (count_.source_finished.load(std::memory_order_acquire)) return false;
   const std::int64_t room = slots_ - count_.outstanding.load(std::memory_order_relaxed);
+  if (sorter_ && 2 * room < slots_) return false;
   // All that fit, so that resources find whole groups waiting when they come round again.
   std::int64_t left = std::min(room, slots_ / workers_ + 1);
   bool any = false;
@@ -76,7 +104,7 @@ bool ShaderWorker::generate() {
     schedule_point();
     if (ledger_ != nullptr) ledger_->add(rays_);
     schedule_point();
-    if (made.rays > 0) control_.submit(rays_);
+    hand_over();
     any |= made.rays > 0;
     if (made.finished || static_cast<std::int64_t>(made.rays) < wanted) break;
     left -= wanted;

@@ -70,8 +70,8 @@ void describe(V& v, EngineConfig& c) {
       "lanes", c.lanes,
       "How a treelet's rays go through it. With boxes each goes by itself, four in turn. With rays they go together, "
       "a list of rays at each node, which is split among its children. auto takes the lists where most of the "
-      "treelet's nodes may be met by several rays. Lists need the instruction set avx3 (AVX-512); with any other one "
-      "rays go by themselves. Hits are the same.");
+      "treelet's nodes may be met by several rays, and with rays.sort: cells. Lists need the instruction set avx3 "
+      "(AVX-512); with any other one rays go by themselves. Hits are the same.");
   v.choice(
       "transport", c.transport,
       "With mpi the processes that mpirun has started play the native engine's machine together, each an arc of its "

@@ -21,6 +21,14 @@ inline constexpr auto kEnumNames<Placement> = [] {
 template <>
 inline constexpr std::string_view kAddedAs<Placement> = "placement";
 
+/// The order in which rays enter the native engine's machine.
+enum class RaySort { kNone, kCells };
+template <>
+inline constexpr auto kEnumNames<RaySort> = [] {
+  using enum RaySort;
+  return names<RaySort>({{kNone, "none"}, {kCells, "cells"}});
+}();
+
 enum class Query { kClosest, kAny, kAll };
 template <>
 inline constexpr auto kEnumNames<Query> = [] {
@@ -54,6 +62,7 @@ inline constexpr auto kEnumNames<QueryConfig::Rounds> = [] {
 struct RaysConfig {
   std::int64_t slots_per_resource = 1024;
   Placement placement = Placement::kBalanced;
+  RaySort sort = RaySort::kNone;
   std::int64_t reads_per_cycle = 0, banks = 0;
   QueryConfig query;
   std::int64_t hits_per_ray = 1024;
@@ -92,6 +101,11 @@ void describe(V& v, RaysConfig& c) {
           "The number of rays that a resource stores at a time.")
       .relax("ray_slots", Better::kTwice, Relaxed{.times = kStorageTimes});
   v.choice("placement", c.placement, "The rule that chooses the resource of a new ray.");
+  v.choice("sort", c.sort,
+           "The order in which new rays get slots. With none it is that in which they were made. With cells a shader "
+           "worker waits until half of the slots are free, and brings rays that start near one another and run into "
+           "the same octant together. Hits are the same.")
+      .only(EngineKind::kNative, "real queues");
   v.field("reads_per_cycle", c.reads_per_cycle, IntRange{0, 1024}, "records/cycle",
           "The number of rays or bundles whose data the testers of a resource read from its store. With 0 there is no "
           "limit.")

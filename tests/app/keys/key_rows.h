@@ -97,6 +97,7 @@ inline std::vector<KeyRow> key_rows() {
       {"rays.slots_per_resource", kTerrain, {}, {"8"}},
       {"rays.placement", kNative},
       {"rays.placement", kTerrain},
+      {"rays.sort", kNative},
       {"rays.reads_per_cycle", kTerrain, {}, {"1"}},
       {"rays.banks", kTerrain, {}, {"1"}},
       {"rays.query.hits", kCornell},

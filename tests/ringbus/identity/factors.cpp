@@ -105,6 +105,7 @@ std::vector<Factor> network() {
       {"topology.link.bytes_per_cycle", {"4", "64"}, {"engine.kind=cycle"}},
       {"rays.slots_per_resource", {"1", "7", "64", "512"}},
       {"rays.placement", all<Placement>()},
+      {"rays.sort", all<RaySort>(), {"engine.kind=native"}},
       {"rays.reads_per_cycle", {"0", "2"}, {"engine.kind=cycle"}},
       {"packets.rays", {"1", "5", "32", "128"}},
       {"packets.shapes", all<PacketShapes>()},

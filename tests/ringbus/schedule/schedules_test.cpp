@@ -54,6 +54,7 @@ Cell small_machine(std::mt19937& random) {
     c.topology.link.queue = one_of(queue_kinds());
     c.rays.slots_per_resource = one_of(kSlots);
     c.rays.placement = static_cast<Placement>(random() % 4);
+    c.rays.sort = random() % 2 == 0 ? RaySort::kNone : RaySort::kCells;
     c.rays.queue = {one_of(many_to_many_kinds()), one_of(kFew)};
     c.packets.rays = one_of(kRays);
     c.packets.results = random() % 2 == 0 ? PacketResults::kMask : PacketResults::kMessage;
