@@ -5,28 +5,76 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <numeric>
 #include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "core/numeric/worth_naming.h"
 #include "report/run/judge_gains.h"
 #include "report/text/progress_line.h"
 #include "report/text/ratio.h"
 #include "ringbus/verdict/bottleneck_search.h"
 #include "ringbus/verdict/cold_caches.h"
+#include "ringbus/verdict/progress_blocks.h"
+#include "ringbus/verdict/search_choices.h"
 #include "ringbus/verdict/small_frame.h"
 
 namespace carousel::app {
 
 namespace {
 
+/// Adds what the paths of each piece took in the run: its cycles, and the busy cycles of the two busiest classes. Rays
+/// complete about in the order in which their paths begin, so a piece has its share of the rays in this order.
+void add_times(RenderJob::PieceWork& work, const RenderJob& job, const ringbus::RunResult& run) {
+  const ringbus::cycle::CycleResult& result = *run.cycle;
+  std::vector<std::size_t> classes(result.uses.size());
+  std::iota(classes.begin(), classes.end(), 0);
+  std::stable_sort(classes.begin(), classes.end(), [&](std::size_t a, std::size_t b) {
+    return ringbus::busy(result, result.uses[a].name) > ringbus::busy(result, result.uses[b].name);
+  });
+  classes.resize(std::min<std::size_t>(classes.size(), 2));
+  using Piece = RenderJob::PieceWork::value_type;
+  const auto reached = [&](double rays) {
+    const auto at = [&](const auto& value) {
+      return ringbus::at_count(result, static_cast<std::uint64_t>(rays), value);
+    };
+    Piece out{};
+    out[RenderJob::kTraced] = at(ringbus::cycle_of);
+    for (std::size_t k = 0; k < classes.size(); ++k)
+      out[RenderJob::kTraced + 1 + k] =
+          at([&](const ringbus::cycle::ProgressSample& s) { return static_cast<double>(s.busy[classes[k]]); });
+    return out;
+  };
+  double paths = 0, rays = 0;
+  for (const Piece& piece : work) {
+    paths += piece[0];
+    rays += piece[1];
+  }
+  const double scale = static_cast<double>(run.rays_completed) / std::max(1.0, rays) * paths /
+                       static_cast<double>(std::max<std::uint64_t>(1, job.first_rays()));
+  double done = 0;
+  Piece before = reached(0);
+  for (std::uint64_t begin = 0, end = 0; begin < job.first_rays(); begin = end) {
+    Piece& piece = work[job.piece_at(begin)];
+    for (end = begin; end < job.first_rays() && &work[job.piece_at(end)] == &piece;) ++end;
+    if (piece[0] <= 0) continue;
+    const double count = static_cast<double>(end - begin);
+    done += scale * count * piece[1] / piece[0];
+    const Piece now = reached(done);
+    for (std::size_t i = RenderJob::kTraced; i < piece.size(); ++i) piece[i] += (now[i] - before[i]) * piece[0] / count;
+    before = now;
+  }
+}
+
 /// The places of a frame's pilots, drawn once for each size and draw so that their work is most like that of the frame.
 class PilotPlaces {
  public:
   /// Keeps references to its arguments.
-  PilotPlaces(const Prepared& prepared, const RenderJob& job) : prepared_(prepared), job_(job) {}
+  PilotPlaces(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& run)
+      : prepared_(prepared), job_(job), run_(run) {}
 
   /// Null if that is the whole frame. Several threads may call.
   const shading::PathSample* of(std::uint64_t paths, std::uint64_t draw) {
@@ -34,8 +82,10 @@ class PilotPlaces {
     const std::lock_guard lock(mutex_);
     const Config& config = prepared_.config();
     const auto seed = static_cast<std::uint64_t>(config.image.seed);
-    if (job_.divisible() && work_.empty())
+    if (job_.divisible() && work_.empty()) {
       work_ = job_.survey(prepared_, config, job_.first_hits(), kOneIn, kLeastPaths, seed);
+      add_times(work_, job_, run_);
+    }
     auto at = samples_.find({paths, draw});
     if (at == samples_.end())
       at = samples_.emplace(std::pair(paths, draw), job_.draw(paths, ringbus::slots_of(config), seed, work_, draw))
@@ -48,6 +98,7 @@ class PilotPlaces {
 
   const Prepared& prepared_;
   const RenderJob& job_;
+  const ringbus::RunResult& run_;
   std::mutex mutex_;
   RenderJob::PieceWork work_;
   std::map<std::pair<std::uint64_t, std::uint64_t>, shading::PathSample> samples_;  // by number of paths, and draw
@@ -92,16 +143,26 @@ std::optional<report::CycleNoise> noise_of(const ringbus::Bottleneck& found, con
                             found.noise->whole};
 }
 
+/// A frame that is too small for a verdict, with what the run's ledger tells all the same.
+report::FrameTooSmall too_small(const ringbus::RunResult& run, const ringbus::SmallFrame& small) {
+  report::FrameTooSmall out{small.paths, small.slots, small.between, small.least_paths};
+  for (const ringbus::cycle::ClassUse& use : run.cycle->uses)
+    if (const double busy = ringbus::busy(*run.cycle, use.name); use.parts > 0 && busy > out.busy) {
+      out.busiest = use.name;
+      out.busy = busy;
+    }
+  return out;
+}
+
 }  // namespace
 
 report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& job, const ringbus::SearchedRun& searched,
                                    std::stop_token stop, bool quiet, std::optional<report::CycleNoise>& noise) {
   const ringbus::RunResult& run = searched.result;
   if (!run.complete) return report::judge_gains({.complete = false});
-  if (const auto small =
-          ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), ringbus::slots_of(prepared.config())))
-    return report::judge_gains(
-        {.frame_too_small = report::FrameTooSmall{small->paths, small->slots, small->between, small->least_paths}});
+  const std::uint64_t slots = ringbus::slots_of(prepared.config());
+  if (const auto small = ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), slots))
+    return report::judge_gains({.frame_too_small = too_small(run, *small)});
   ringbus::RunOptions options;
   options.threads = prepared.threads_beside;
   spdlog::debug("search: up to {} simulations at once", options.threads);
@@ -115,7 +176,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
     line->update(std::min(1.0, (static_cast<double>(at.done) + under_way) / static_cast<double>(at.of)), at.completed,
                  "rays", fmt::format("bottleneck, {}, {} of {} simulations done", at.stage, at.done, at.of));
   };
-  PilotPlaces places(prepared, job);
+  PilotPlaces places(prepared, job, run);
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       prepared.config(), prepared.accel, prepared.scene_size(),
       [&](const Config& machine, std::uint64_t paths, std::uint64_t draw) {
@@ -125,6 +186,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
       },
       searched, options, show);
   noise = noise_of(found, run);
+  if (found.least_paths > 0)
+    return report::judge_gains({.frame_too_small = too_small(run, {job.first_rays(), slots, 1, found.least_paths})});
   spdlog::debug("search: simulated {} rays, {:.2f} times those of the run", found.simulated,
                 report::ratio(found.simulated, run.rays_completed));
   if (found.whole)
@@ -139,7 +202,6 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          .noise = found.uncertainty,
                          .deviation = found.deviation,
                          .whole_frame = found.whole,
-                         .replicates = found.replicates,
                          .paths = found.paths,
                          .rays = found.rays};
   for (const ringbus::Gain& gain : found.gains)
@@ -148,9 +210,15 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   for (const ringbus::GainPhase& phase : found.phases)
     out.phases.push_back({phase.begin, phase.end, phase.time, phase.name, phase.action, phase.gain});
   report::Bottleneck judged = report::judge_gains(std::move(out));
-  const ringbus::MemoryReads reads = ringbus::reads_between(*run.cycle, ringbus::slots_of(prepared.config()));
+  const ringbus::MemoryReads reads = ringbus::reads_between(*run.cycle, slots);
   if (!ringbus::gains_of_cold_caches(judged.limits) || reads.first_share() < ringbus::kColdShare) return judged;
   judged.cold_caches = report::ColdCaches{judged.limits, reads.reads, reads.first};
+  const auto memory = std::find_if(judged.gains.begin(), judged.gains.end(),
+                                   [&](const report::BottleneckGain& gain) { return gain.name == judged.limits; });
+  for (const report::BottleneckGain& gain : judged.gains)
+    if (judged.cold_caches->instead.empty() && gain.together == 1 && worth_naming(gain.gain, gain.low) &&
+        gain.high >= memory->gain && !ringbus::gains_of_cold_caches(gain.name))
+      judged.cold_caches->instead = gain.name;
   return report::judge_gains(std::move(judged));
 }
 

@@ -104,7 +104,8 @@ RenderJob::PieceWork RenderJob::survey(const Prepared& prepared, const Config& c
 template <class Draw>
 shading::PathSample RenderJob::most_like(const PieceWork& work, const Draw& draw, std::uint64_t first) const {
   constexpr std::uint64_t kDraws = 500;
-  using Sum = std::array<double, 4>;
+  constexpr double kTime = 4;  // weight of the cycles, which a pilot is judged by
+  using Sum = PieceWork::value_type;
   const auto add = [&work](Sum& to, std::uint64_t piece) {
     for (std::size_t i = 0; i < to.size(); ++i) to[i] += work[piece][i];
   };
@@ -118,7 +119,8 @@ shading::PathSample RenderJob::most_like(const PieceWork& work, const Draw& draw
     for (const shading::PathSample::Run& run : sample.runs()) add(own, piece_at(run.first));
     double off = 0;
     for (std::size_t i = 1; i < own.size(); ++i)
-      if (own[0] > 0 && whole[i] > 0) off += std::pow(own[i] / own[0] * whole[0] / whole[i] - 1, 2);
+      if (own[0] > 0 && whole[i] > 0)
+        off += (i == kTraced ? kTime : 1) * std::pow(own[i] / own[0] * whole[0] / whole[i] - 1, 2);
     if (off >= least) continue;
     least = off;
     best = std::move(sample);

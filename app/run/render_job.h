@@ -29,8 +29,10 @@ class RenderJob {
   /// pass, and must outlive the job.
   RenderJob(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits = nullptr);
 
-  /// Work of some paths of each piece of the frame, traced depth-first: paths, rays, box tests and other tests.
-  using PieceWork = std::vector<std::array<double, 4>>;
+  /// Work of some paths of each piece of the frame, traced depth-first: paths, rays, box tests and other tests; then,
+  /// if it is known, what they took on the machine: cycles, and the busy cycles of two classes of parts.
+  using PieceWork = std::vector<std::array<double, 7>>;
+  static constexpr std::size_t kTraced = 4;  ///< numbers of a piece that come of tracing
   /// Traces one path in `one_in` of the frame of this configuration, but `least` or more.
   PieceWork survey(const Prepared& prepared, const Config& config, const shading::FirstHits* first_hits,
                    std::uint64_t one_in, std::uint64_t least, std::uint64_t seed) const;

@@ -19,6 +19,11 @@ const BottleneckGain& named_cold(const Bottleneck& b) {
 
 std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (!b.complete) return "not found out: the search was interrupted";
+  if (const auto& small = b.frame_too_small; small && small->between >= 1)
+    return fmt::format(
+        "not found out: {} paths for {} ray slots are too few for a search that takes no longer than the run; from "
+        "some {} paths on, or with fewer slots, it can be said; {} was the busiest part, {:.0f} % of the time",
+        grouped(small->paths), grouped(small->slots), grouped(small->least_paths), small->busiest, 100 * small->busy);
   if (const auto& small = b.frame_too_small)
     return fmt::format(
         "not found out: {} paths for {} ray slots mostly fill and drain the machine ({:.0f} % of the rays lie "
@@ -27,7 +32,7 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
         grouped(small->paths), grouped(small->slots), 100 * small->between, grouped(small->least_paths));
   if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
-  if (const auto& cold = b.cold_caches)
+  if (const auto& cold = b.cold_caches; cold && named == nullptr)
     return fmt::format(
         "not found out: {} gains {}, but {:.0f} % of the lines that memory reads between fill and drain are read for "
         "the "
@@ -48,6 +53,11 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
       if (shown < kShown && std::find(b.rivals.begin(), b.rivals.end(), gain.name) != b.rivals.end())
         text += fmt::format("{} {} with {}", shown++ == 0 ? "" : ",", gain.name, gain_text(gain));
     if (b.rivals.size() > shown) text += fmt::format(" and {} more", b.rivals.size() - shown);
+    if (b.cold_caches)
+      text += fmt::format(
+          "; {:.0f} % of the lines that memory reads are read for the first time, and {} gains less in a "
+          "larger picture",
+          100 * ratio(b.cold_caches->first, b.cold_caches->reads), b.cold_caches->named);
     return text;
   }
   const auto next = std::find_if(b.gains.begin(), b.gains.end(),
@@ -66,8 +76,13 @@ std::string gain_text(const BottleneckGain& gain) {
 Bottleneck judge_gains(Bottleneck found) {
   const BottleneckGain* named = nullptr;
   for (const BottleneckGain& gain : found.gains)
-    if (named == nullptr && worth_naming(gain.gain, gain.low)) named = &gain;
-  if (found.cold_caches) named = nullptr;
+    if (named == nullptr && gain.together == 1 && worth_naming(gain.gain, gain.low)) named = &gain;
+  if (found.cold_caches) {
+    const auto instead = std::find_if(found.gains.begin(), found.gains.end(), [&](const BottleneckGain& gain) {
+      return gain.name == found.cold_caches->instead;
+    });
+    named = instead == found.gains.end() ? nullptr : &*instead;
+  }
   found.limits = named == nullptr ? "" : named->name;
   found.rivals.clear();
   for (const BottleneckGain& gain : found.gains)

@@ -54,7 +54,8 @@ void describe(V& v, const BottleneckGain& r) {
           "lower end of the gain's interval of confidence (95 %), which covers other seeds of the picture");
   v.field("high", r.high, "fraction", "upper end of the gain's interval of confidence (95 %)");
   v.field("together", r.together, "classes",
-          "classes that were relaxed together in the simulation: if more than 1, the gain is that of all of them");
+          "classes that were relaxed together in the simulation: if more than 1, the gain is that of all of them; 0: "
+          "none was simulated, as the run's ledger bounds the gain below 5 %");
 }
 
 /// A frame that is too small beside the ray slots of its machine for a verdict.
@@ -62,6 +63,8 @@ struct FrameTooSmall {
   std::uint64_t paths = 0, slots = 0;
   double between = 0;
   std::uint64_t least_paths = 0;
+  std::string busiest{};
+  double busy = 0;
 };
 
 template <class V>
@@ -69,8 +72,11 @@ void describe(V& v, const FrameTooSmall& r) {
   v.field("paths", r.paths, "paths", "paths, or rays of a list, that the frame begins");
   v.field("slots", r.slots, "slots", "ray slots of the machine");
   v.field("between", r.between, "fraction",
-          "part of the rays that were completed between fill and drain; three quarters would do");
+          "part of the rays that were completed between fill and drain; three quarters would do; 1 where the least "
+          "search would take longer than it may");
   v.field("least_paths", r.least_paths, "paths", "paths that would do on this machine, about");
+  v.field("busiest", r.busiest, "", "class of parts that was busy for most of the run");
+  v.field("busy", r.busy, "fraction", "part of the time in which its parts were busy, in the mean");
 }
 
 /// Reads of memory of which so many are the first of their lines that the named class may gain only while caches are
@@ -78,6 +84,7 @@ void describe(V& v, const FrameTooSmall& r) {
 struct ColdCaches {
   std::string named;
   std::uint64_t reads = 0, first = 0;
+  std::string instead{};
 };
 
 template <class V>
@@ -85,6 +92,8 @@ void describe(V& v, const ColdCaches& r) {
   v.field("named", r.named, "", "class of parts that would be named");
   v.field("reads", r.reads, "lines", "lines read from memory between fill and drain");
   v.field("first", r.first, "lines", "those that had not been read before: a larger frame has hardly more of them");
+  v.field("instead", r.instead, "",
+          "class that is named instead, since it is not of the way to memory and may gain as much; empty if none may");
 }
 
 /// A stretch of the first pilot in which one class of parts gains most.
@@ -110,7 +119,7 @@ struct Bottleneck {
   std::vector<std::string> rivals{};
   double rays_per_kilocycle = 0, noise = 0, deviation = 0;
   bool whole_frame = false;
-  std::uint64_t replicates = 0, paths = 0, rays = 0;
+  std::uint64_t paths = 0, rays = 0;
   std::optional<FrameTooSmall> frame_too_small{};
   std::optional<ColdCaches> cold_caches{};
   std::vector<BottleneckGain> gains{};
@@ -132,17 +141,14 @@ void describe(V& v, const Bottleneck& r) {
           "half the interval of confidence of the rate that the pilot foretells for the machine as configured");
   v.field("deviation", r.deviation, "fraction", "difference of the run's cycles from those that the pilot foretells");
   v.field("whole_frame", r.whole_frame, "", "true if the pilot is the whole frame");
-  v.field(
-      "replicates", r.replicates, "seeds",
-      "other seeds of the picture with which the whole frame was simulated; the named gains' intervals hold theirs");
   v.field("paths", r.paths, "paths", "paths of the pilot, drawn over the whole frame");
   v.field("rays", r.rays, "rays", "rays of the pilot, which are simulated for each class");
   v.section("frame_too_small", r.frame_too_small,
             "the frame mostly fills and drains the machine, so that nothing is found out; absent otherwise");
   v.section(
       "cold_caches", r.cold_caches,
-      "the memory gains most, and a quarter or more of its reads fetch what nobody had asked for, so that no class "
-      "is named; absent otherwise");
+      "the memory gains most, and a quarter or more of its reads fetch what nobody had asked for, so that it is not "
+      "named; absent otherwise");
   v.section("gains", r.gains, "gain of each class, greatest first");
   v.section(
       "phases", r.phases,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <limits>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -14,7 +15,9 @@
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
+#include "ringbus/verdict/search_budget.h"
 #include "ringbus/verdict/search_choices.h"
+#include "ringbus/verdict/small_frame.h"
 #include "ringbus/verdict/steady_state.h"
 #include "ringbus/verdict/what_if.h"
 
@@ -26,7 +29,11 @@ class Search {
  public:
   Search(const Config& config, const accel::Accel& accel, float scene_size, const PilotFactory& make_pilot,
          const SearchedRun& run, const RunOptions& options, const SearchObserver& observe)
-      : config_(config), accel_(accel), run_(run), pilots_(accel, scene_size, make_pilot, run, options, observe) {
+      : config_(config),
+        accel_(accel),
+        run_(run),
+        budget_{run.paths, run.result.rays_completed},
+        pilots_(accel, scene_size, make_pilot, run, options, observe) {
     // The bottleneck is that of the whole machine, before a resource stops.
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
@@ -37,17 +44,24 @@ class Search {
   }
 
   Bottleneck search() {
-    const std::vector<std::vector<std::size_t>> groups = search_groups(what_ifs_, *run_.result.cycle);
-    out_.paths = pilot_paths(config_, run_.paths, frame(),
-                             share(kScreening, groups.size() + 1 + static_cast<std::size_t>(noise_seeds_)));
-    pilots_.begin("first pilot", groups.size() + 1, out_.paths);
+    std::vector<std::vector<std::size_t>> groups = search_groups(what_ifs_, *run_.result.cycle);
+    for (std::size_t i = 0; i < what_ifs_.size(); ++i) note(i, {0, 0, most(i)}, 0);
+    leave_out(groups, out_.gains, kWorthIt);
+    const std::size_t first = groups.size() + 1;
+    out_.paths = first_paths(config_, run_.paths, budget_, first);
+    if (budget_.of(out_.paths, first) > kAtMost) {
+      out_.least_paths = two_digits_up(static_cast<double>(run_.paths) * budget_.of(out_.paths, first) / kAtMost);
+      out_.gains.clear();
+      return out_;
+    }
+    pilots_.begin("first pilot", first, out_.paths);
     screen(groups);
-    const bool whole = out_.whole;
-    if (!whole && out_.complete) find_noise();
     note_phases();
-    if (out_.complete && !out_.whole && !told()) look_again();
+    seeds_ = {out_.paths, draw_, base_.cycle ? static_cast<double>(base_.cycle->cycles) : 0};
+    while (out_.complete && !told() && look_again()) {
+    }
     if (out_.complete) judge();
-    if (whole && out_.complete) replicate();
+    if (out_.complete) find_noise();
     if (!out_.complete || !out_.unlike.empty()) {
       out_.gains.clear();
       out_.phases.clear();
@@ -57,26 +71,16 @@ class Search {
   }
 
  private:
-  static constexpr double kScreening = 0.4;  // of the run's rays, that the first pilot is to take
-  static constexpr double kWanted = 0.9;     // that all pilots are to take
-  static constexpr double kAtMost = 1.6;     // that they may take to tell the greatest gain from noise
-
   std::uint64_t frame() const { return run_.result.rays_completed; }
 
-  /// Rays of each of so many simulations that take this part of the run's rays together.
-  std::uint64_t share(double part, std::size_t simulations) const {
-    return static_cast<std::uint64_t>(std::max(0.0, part) * static_cast<double>(frame()) /
-                                      static_cast<double>(simulations));
+  /// So many simulations of the present pilot keep within this part of the run's rays.
+  bool affords(std::size_t simulations, double part) const {
+    return budget_.of(out_.paths, simulations) <= budget_.left(part, out_.simulated);
   }
 
-  /// The part of the run's rays that so many simulations of these paths take.
-  double part_of_run(std::uint64_t paths, std::size_t simulations) const {
-    return static_cast<double>(simulations * paths) / static_cast<double>(run_.paths);
-  }
-
-  /// The part of the run's rays that a search of this extent has left.
-  double left_of(double part) const {
-    return part - static_cast<double>(out_.simulated) / static_cast<double>(frame());
+  /// The most that a class may gain by the run's ledger, which is not that of a machine in which a resource stops.
+  double most(std::size_t i) const {
+    return stops_ ? std::numeric_limits<double>::infinity() : most_gain(*run_.result.cycle, what_ifs_[i].name());
   }
 
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
@@ -102,13 +106,13 @@ class Search {
   }
 
   /// Simulates the machine as configured. Draws the pilot again while it is not like the run, as long as that takes
-  /// little, and goes on with the one that is most like it.
-  void simulate_base() {
+  /// little beside the simulations that are to follow, and goes on with the one that is most like it.
+  void simulate_base(std::size_t others) {
     if (base_is_the_run()) return;
-    constexpr std::uint64_t kDraws = 4;
-    constexpr double kLike = 0.05, kLittle = 0.3;
+    const std::uint64_t draws = cold_ ? 1 : 4;  // no part of a cold frame is like it
+    constexpr double kLike = 0.05, kLittle = 0.25;
     std::uint64_t taken = 0;
-    for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
+    for (std::uint64_t draw = 0; draw < draws; ++draw) {
       pilots_.take(draw);
       RunResult drawn = simulate({&config_}).front();
       if (!out_.complete) return;
@@ -117,9 +121,12 @@ class Search {
         taken = draw;
         set_base(std::move(drawn));
       }
-      if (likeness_.off() <= kLike || part_of_run(out_.paths, draw + 2) > kLittle) break;
+      if (likeness_.off() <= kLike || budget_.of(out_.paths, draw + 2) > kLittle ||
+          budget_.of(out_.paths, others + 1) > budget_.left(kWanted, out_.simulated))
+        break;
       pilots_.expect_more(1);
     }
+    draw_ = taken;
     pilots_.take(taken);
   }
 
@@ -131,48 +138,55 @@ class Search {
             stops_ ? nullptr : &*run_.result.cycle};
   }
 
-  /// Simulates the pilot as configured and with the classes of each group relaxed together; then parts of the groups
-  /// for which that may gain enough, down to single classes.
+  /// Simulates the pilot as configured and with each class that stands alone relaxed; then with those of each group
+  /// relaxed together that may gain enough by the run's ledger; then parts of the groups for which that may gain
+  /// enough, down to single classes, the most promising first, as far as the budget allows.
   void screen(std::vector<std::vector<std::size_t>> groups) {
-    simulate_base();
-    while (out_.complete && !groups.empty()) {
-      std::vector<std::vector<std::size_t>> tried, parts;
+    std::vector<std::vector<std::size_t>> later;
+    for (const std::vector<std::size_t>& group : groups)
+      if (group.size() > 1) later.push_back(group);
+    std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.size() > 1; });
+    simulate_base(groups.size() + later.size());
+    double budget = kAtMost;
+    for (int round = 0; out_.complete && !(groups.empty() && later.empty()); ++round) {
+      std::vector<std::vector<std::size_t>> tried;
       std::deque<Config> together;
       std::vector<const Config*> machines;
-      for (std::vector<std::size_t>& group : groups) {
+      for (std::size_t k = 0; k < groups.size() && (round < 2 || affords(machines.size() + 1, budget)); ++k) {
+        const std::vector<std::size_t> group = groups[k];
         std::vector<const WhatIf*> members;
         for (const std::size_t i : group) members.push_back(&what_ifs_[i]);
         std::optional<Config> machine =
             group.size() == 1 ? members.front()->relaxed : relaxed_together(config_, members);
         if (!machine) {
-          divide(group, parts);
+          divide(group, groups);
           continue;
         }
         machines.push_back(&together.emplace_back(std::move(*machine)));
-        tried.push_back(std::move(group));
+        tried.push_back(group);
       }
       std::vector<RunResult> results = simulate(machines);
       if (!out_.complete) return;
       std::vector<std::pair<std::vector<std::size_t>, Estimate>> several;
       for (std::size_t k = 0; k < tried.size(); ++k) {
         const Estimate gain = gain_of(tried[k], results[k]);
-        if (tried[k].size() > 1) {
+        for (const std::size_t i : tried[k]) note(i, gain, tried[k].size());
+        if (tried[k].size() > 1)
           several.emplace_back(std::move(tried[k]), gain);
-          continue;
-        }
-        relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
-        note(tried[k].front(), gain, 1);
+        else
+          relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
       }
       // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
       // A pilot that is not like the run, and may not even tell that from nothing, tells less of each.
-      const double enough = std::max(kEnough, surely(out_.gains));
-      for (const auto& [group, gain] : several) {
-        if (gain.value < kEnough || gain.high < enough || (likeness_.other_cycles && gain.low <= 0))
-          for (const std::size_t i : group) note(i, gain, group.size());
-        else
-          divide(group, parts);
-      }
-      groups = std::move(parts);
+      std::stable_sort(several.begin(), several.end(),
+                       [](const auto& a, const auto& b) { return a.second.value > b.second.value; });
+      // A group that gains more than any class that was looked at alone leaves nothing to name.
+      budget = !several.empty() && several.front().second.value > greatest_alone(out_.gains) ? kAtMost : kWanted;
+      if (cold_) budget = kWithFrame - 1.05;  // which may follow
+      groups = std::exchange(later, {});
+      for (const auto& [group, gain] : several)
+        if (gain.value >= kEnough && (!likeness_.other_cycles || gain.low > 0)) divide(group, groups);
+      leave_out(groups, out_.gains, std::max(kEnough, surely(out_.gains)));
     }
   }
 
@@ -199,12 +213,12 @@ class Search {
     pilots_.expect_more(own.size());
   }
 
+  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0).
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
+    const double high = together == 1 ? gain.high : std::min(gain.high, most(i)), value = std::min(gain.value, high);
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
-    out_.gains[i] = {what_ifs_[i].name(), what_ifs_[i].part.action,
-                     what_ifs_[i].sets,   rate * (1 + gain.value),
-                     gain.value,          gain.low,
-                     gain.high,           together};
+    const WhatIf& what = what_ifs_[i];
+    out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, gain.low, high, together};
   }
 
   /// Relaxes each of these classes with the present pilot.
@@ -233,17 +247,18 @@ class Search {
     }
   }
 
-  /// Simulates a larger pilot if it may tell more.
-  void look_again() {
+  /// Simulates a larger pilot if it may tell more, and returns true then.
+  bool look_again() {
     const bool of_memory = cold_ && !out_.unlike.empty();
     std::vector<std::size_t> worth =
         worth_a_second_look(out_.gains, of_memory || likeness_.other_cycles ? kFewest : kContenders, of_memory);
     const std::uint64_t paths = next_paths(worth);
-    if (paths == 0) return;
+    if (paths <= out_.paths) return false;
     out_.paths = paths;
-    pilots_.begin("second pilot", worth.size() + 1, out_.paths);
-    simulate_base();
+    pilots_.begin("larger pilot", worth.size() + 1, out_.paths);
+    simulate_base(worth.size());
     if (out_.complete) relax_contenders(worth);
+    return true;
   }
 
   /// Relaxes those of these classes that may be the best: of many, the two that promise most, and then those that may
@@ -258,8 +273,8 @@ class Search {
         if (relaxed_[i].paths != out_.paths && out_.gains[i].high >= surely) missing.push_back(i);
       if (first && missing.size() >= kMany) missing.resize(kFirst);
       // After that, the one that would be named by an earlier pilot's gain.
-      if (const auto best = named_gain(out_.gains);
-          missing.empty() && best && out_.gains[*best].together == 1 && relaxed_[*best].paths != out_.paths) {
+      if (const auto best = named_gain(out_.gains); missing.empty() && best && out_.gains[*best].together == 1 &&
+                                                    relaxed_[*best].paths != out_.paths && affords(1, kAtMost)) {
         missing.push_back(*best);
         pilots_.expect_more(std::find(classes.begin(), classes.end(), *best) == classes.end());
       }
@@ -275,90 +290,64 @@ class Search {
   /// class stands out in spite of the difference.
   bool told() { return judge() && sure(out_.gains); }
 
-  /// Paths of a second pilot, which is to relax these classes; 0 if what it takes is not worth it. If the first one is
-  /// not like the run, another follows, whatever that takes.
+  /// Paths of a larger pilot, which is to relax these classes, or fewer of them; 0 if the budget has none.
   std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
-    const std::uint64_t twice = std::min(run_.paths, 2 * out_.paths);
-    if (!out_.unlike.empty()) return paths_after_unlike(out_.paths, run_.paths, worth.size(), cold_);
+    const double most = budget_.left(kAtMost, out_.simulated);
+    if (!out_.unlike.empty()) {
+      // No part of a cold frame is like it.
+      if (!cold_ || worth.empty() || budget_.left(kWithFrame, out_.simulated) < 1)
+        return doubled(budget_, out_.paths, most, worth);
+      worth.resize(1);
+      return run_.paths;
+    }
     if (worth.empty()) return 0;
-    const std::uint64_t wanted = pilot_paths(config_, run_.paths, frame(), share(left_of(kWanted), worth.size() + 1));
-    if (left_of(kWanted) > 0 && wanted >= out_.paths + out_.paths / 2) return wanted;
+    const double left =
+        budget_.left(kWanted, out_.simulated) - budget_.of(seeds_.paths, static_cast<std::size_t>(noise_seeds_));
+    for (std::size_t n = worth.size(); left > 0 && n >= kFewest; --n) {
+      const std::uint64_t wanted =
+          pilot_paths(config_, run_.paths, frame(), budget_.share(left, n + 1), PilotSize::kFull);
+      if (wanted < out_.paths + out_.paths / 2 || budget_.of(wanted, n + 1) > most) continue;
+      worth.resize(n);
+      return wanted;
+    }
     const Gain& best = out_.gains[worth.front()];
     if (best.gain < kWorthIt || worth_naming(best.gain, best.low)) return 0;
-    // The greatest gain may be noise.
-    worth.resize(std::min(worth.size(), kFewest));
-    return part_of_run(twice, worth.size() + 1) <= left_of(kAtMost) ? twice : 0;
+    return doubled(budget_, out_.paths, most, worth);  // the greatest gain may be noise
   }
 
-  /// Notes the noise of the cycles by those of pilots of so many paths with the run's seed and with others.
-  void note_noise(const std::vector<double>& cycles, std::uint64_t paths) {
-    out_.noise = cycle_noise(cycles, paths >= run_.paths);
-    out_.noise_paths = paths;
-  }
-
-  /// Simulates the pilot with other seeds: its places in the picture are the same, and their rays are others. Where no
-  /// larger pilot is to follow, what the search has left makes these pilots larger, and their noise smaller.
+  /// Simulates a pilot with other seeds: its places in the picture are the same, and their rays are others. It is the
+  /// last pilot, or twice as large if the budget has so much left, or the first one if it has less.
   void find_noise() {
     if (noise_seeds_ == 0) return;
+    const auto seeds = static_cast<std::size_t>(noise_seeds_);
+    const double base = static_cast<double>(base_.cycle->cycles);
     const std::uint64_t twice = 2 * out_.paths;
-    const bool larger = told() && twice <= run_.paths && part_of_run(twice, noise_seeds_ + 1) <= left_of(kWanted);
-    const std::uint64_t of_gains = std::exchange(out_.paths, larger ? twice : out_.paths);
-    pilots_.begin("other seeds", noise_seeds_ + (larger ? 1 : 0), out_.paths);
+    BasePilot of{out_.paths, draw_, base};
+    if (twice <= run_.paths && budget_.of(twice, seeds + 1) <= budget_.left(kWanted, out_.simulated))
+      of = {twice, draw_, 0};
+    else if (budget_.of(out_.paths, seeds) > budget_.left(kWanted, out_.simulated))
+      of = seeds_;
+    if (budget_.of(of.paths, seeds) > budget_.left(kAtMost, out_.simulated)) return;
+    pilots_.begin("other seeds", seeds + (of.cycles > 0 ? 0 : 1), of.paths);
+    pilots_.take(of.draw);
     std::deque<Config> machines;
     std::vector<const Config*> which;
-    for (std::uint64_t k = larger ? 0 : 1; k <= noise_seeds_; ++k)
-      which.push_back(k == 0 ? &config_ : &machines.emplace_back(with_other_seed(config_, k)));
+    if (of.cycles <= 0) which.push_back(&config_);
+    for (std::uint64_t k = 1; k <= noise_seeds_; ++k)
+      which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
     std::vector<double> cycles;
-    if (!larger) cycles.push_back(static_cast<double>(base_.cycle->cycles));
+    if (of.cycles > 0) cycles.push_back(of.cycles);
     for (const RunResult& result : simulate(which))
       if (out_.complete) cycles.push_back(static_cast<double>(result.cycle->cycles));
-    if (out_.complete) note_noise(cycles, out_.paths);
-    out_.paths = of_gains;
-  }
-
-  /// Simulates the whole frame with other seeds of the picture, as configured and with the classes that may be named,
-  /// widens the intervals of these to hold what they gain there, and notes the noise of the cycles.
-  void replicate() {
-    constexpr std::uint64_t kReplicates = 2;
-    constexpr std::size_t kMost = 3;
-    std::vector<std::size_t> named;
-    for (std::size_t i = 0; i < out_.gains.size(); ++i)
-      if (worth_naming(out_.gains[i].gain, out_.gains[i].low)) named.push_back(i);
-    greatest_first(out_.gains, named);
-    named.resize(std::min(named.size(), kMost));
-    const std::uint64_t replicates = named.empty() ? 0 : kReplicates;
-    std::deque<Config> machines;
-    for (std::uint64_t k = 1; k <= std::max(replicates, noise_seeds_); ++k) {
-      machines.push_back(with_other_seed(config_, k));
-      for (const std::size_t i : named)
-        if (k <= replicates) machines.push_back(with_other_seed(what_ifs_[i].relaxed, k));
-    }
-    if (machines.empty()) return;
-    pilots_.begin("other seeds", machines.size(), out_.paths);
-    std::vector<const Config*> which;
-    for (const Config& machine : machines) which.push_back(&machine);
-    const std::vector<RunResult> results = simulate(which);
     if (!out_.complete) return;
-    std::vector<double> cycles;
-    for (auto at = results.begin(); at != results.end();) {
-      cycles.push_back(static_cast<double>(at++->cycle->cycles));
-      for (std::size_t n = 0; n < named.size() && cycles.size() <= replicates; ++n) {
-        Gain& gain = out_.gains[named[n]];
-        const double there = cycles.back() / static_cast<double>(at++->cycle->cycles) - 1;
-        gain.low = std::min(gain.low, there);
-        gain.high = std::max(gain.high, there);
-      }
-    }
-    out_.replicates = replicates;
-    cycles.push_back(static_cast<double>(base_.cycle->cycles));
-    if (noise_seeds_ > 0) note_noise(cycles, out_.paths);
+    out_.noise = cycle_noise(cycles, of.paths >= run_.paths);
+    out_.noise_paths = of.paths;
   }
 
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
   /// are alike, or if a class is worth naming in spite of the difference, which widens its interval, unless the cycles
   /// differ by much.
   bool judge() {
-    constexpr double kMuch = 0.25;
     const Estimate cycles = foretelling(base_).cycles();
     out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
     const double ran = stops_ ? cycles.value : static_cast<double>(run_.result.cycle->cycles);
@@ -366,24 +355,20 @@ class Search {
     out_.deviation = likeness_.deviation;
     out_.unlike =
         likeness_.veto([this](std::string_view part) { return matters(out_.gains, *run_.result.cycle, part); });
-    if (std::abs(likeness_.deviation) <= kMuch && named_gain(out_.gains)) out_.unlike.clear();
+    if (stands_out(out_.gains, likeness_.deviation)) out_.unlike.clear();
     return out_.unlike.empty();
   }
-
-  /// A relaxed machine's run, and the pilot that it was.
-  struct Relaxed {
-    RunResult result;
-    std::uint64_t paths = 0;
-  };
 
   Config config_;
   const accel::Accel& accel_;
   const SearchedRun& run_;
+  SearchBudget budget_;
   PilotRuns pilots_;
-  bool stops_ = false, cold_ = false;  // a resource; caches of the run
-  std::uint64_t noise_seeds_ = 0;
+  bool stops_ = false, cold_ = false;         // a resource; caches of the run
+  std::uint64_t noise_seeds_ = 0, draw_ = 0;  // draw_: of the present pilot
+  BasePilot seeds_;                           // the first pilot
   std::vector<WhatIf> what_ifs_;
-  std::map<std::size_t, Relaxed> relaxed_;  // by index of what_ifs_
+  std::map<std::size_t, RelaxedPilot> relaxed_;  // by index of what_ifs_
   RunResult base_;
   Likeness likeness_;  // of the present pilot; a run in which a resource stops is not compared
   Bottleneck out_;

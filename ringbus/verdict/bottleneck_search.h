@@ -19,7 +19,8 @@ struct Gain {
   double rays_per_kilocycle = 0;  ///< throughput of the whole frame, foretold
   double gain = 0;                ///< over the machine as configured, as a fraction of its throughput
   double low = 0, high = 0;       ///< its interval of confidence
-  /// Classes that were relaxed together in the simulation, and gained so little that none was looked at alone.
+  /// Classes that were relaxed together in the simulation, and gained so little that none was looked at alone, or for
+  /// which the budget had nothing left; 0: none was simulated, as the part has so much to spare.
   std::size_t together = 1;
 };
 
@@ -40,7 +41,7 @@ struct Bottleneck {
   std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
   std::uint64_t simulated = 0;    ///< rays of all simulations of the search
   bool whole = false;             ///< the pilot is the whole frame
-  std::uint64_t replicates = 0;   ///< other seeds with which the whole frame was simulated
+  std::uint64_t least_paths = 0;  ///< if not 0: the frame is too small for a search, and so many paths would do
   double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
   double uncertainty = 0;         ///< uncertainty of the foretold cycles, from the pilot alone, as a fraction
   std::optional<CycleNoise> noise;  ///< of the run's cycles; absent if a resource stops

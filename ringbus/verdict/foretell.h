@@ -53,8 +53,8 @@ class Foretelling {
   /// section 8.2, v2). The frame with another seed of its picture differs from this one, too, by as much as its own
   /// rays make it, N in all beside the pilot's n: two standard errors, times the root of 1 + n / N, count, also of a
   /// pilot that is the whole frame. `deviation`, the fraction by which the frame is known to differ from its
-  /// foretelling, is another error, as if independent: if it lies in the class at question, the time that the class
-  /// limits is off by as much.
+  /// foretelling, is another error, as if independent: if three quarters of it lie in the class at question, the time
+  /// that the class limits is off by as much.
   ///
   /// `warms`: the relaxed machine has more room for shapes, and may go on filling it after it is full of rays. If the
   /// later half of the pilot gains surely more than the earlier one, it stands for the frame's further rays, and the

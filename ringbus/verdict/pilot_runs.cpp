@@ -15,20 +15,17 @@ std::uint64_t slots_of(const Config& config) {
   return static_cast<std::uint64_t>(all_slots(config));
 }
 
-std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted) {
-  // Three times the rays that fill the machine: half of the pilot is then between fill and drain.
-  constexpr std::uint64_t kFills = 3, kLeastRays = 1000, kMostFills = 64, kMostRays = 80'000;
-  // A pilot that is a good part of a small frame spares little, and the frame leaves no question.
-  constexpr std::uint64_t kSmallFills = 6, kSmallRays = 3000;
-  const std::uint64_t fill = fill_rays(slots_of(config));
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted,
+                          PilotSize least) {
+  // Three times the rays that fill the machine, or twice.
+  constexpr std::uint64_t kMostFills = 64, kMostRays = 80'000;
+  const std::uint64_t fill = fill_rays(slots_of(config)), most = std::max(kMostRays, kMostFills * fill),
+                      rays_at_least = least == PilotSize::kFull ? std::max<std::uint64_t>(1000, 3 * fill)
+                                                                : std::max<std::uint64_t>(600, 2 * fill);
   const double rays_each =
       static_cast<double>(std::max(rays, paths)) / static_cast<double>(std::max<std::uint64_t>(1, paths));
-  const auto at_least = [&](std::uint64_t least) {
-    const std::uint64_t most = std::max(kMostRays, kMostFills * fill);
-    return static_cast<std::uint64_t>(std::ceil(static_cast<double>(std::clamp(wanted, least, most)) / rays_each));
-  };
-  if (3 * at_least(std::max(kSmallRays, kSmallFills * fill)) >= 2 * paths) return paths;
-  return at_least(std::max(kLeastRays, kFills * fill));
+  return std::min(paths, static_cast<std::uint64_t>(
+                             std::ceil(static_cast<double>(std::clamp(wanted, rays_at_least, most)) / rays_each)));
 }
 
 Config with_other_seed(const Config& machine, std::uint64_t k) {

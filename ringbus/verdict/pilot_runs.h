@@ -26,12 +26,27 @@ struct SearchedRun {
 /// The ray slots of a machine.
 std::uint64_t slots_of(const Config& config);
 
-/// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; all of them if that
-/// is most of the frame, or the frame is small beside what a pilot needs.
-std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted);
+/// How large a pilot is at least: so that half of it is between fill and drain, or, where that takes too much, a third.
+enum class PilotSize : std::uint8_t { kFull, kLeast };
+
+/// Paths of a pilot that is to have `wanted` rays, for a frame of `paths` paths with `rays` rays; at most all of them.
+std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted,
+                          PilotSize least);
 
 /// The machine with the picture's k-th other seed, of the same range, far from those that users count up from.
 Config with_other_seed(const Config& machine, std::uint64_t k);
+
+/// A pilot with the machine as configured.
+struct BasePilot {
+  std::uint64_t paths = 0, draw = 0;
+  double cycles = 0;  ///< 0: not known
+};
+
+/// A relaxed machine's run, and the pilot that it was.
+struct RelaxedPilot {
+  RunResult result;
+  std::uint64_t paths = 0;
+};
 
 /// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
 /// machine, and others for another `draw`.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -11,6 +12,7 @@
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/verdict/bottleneck_search.h"
 #include "ringbus/verdict/cold_caches.h"
+#include "ringbus/verdict/ledger_bound.h"
 #include "ringbus/verdict/what_if.h"
 
 namespace carousel::ringbus {
@@ -28,10 +30,7 @@ inline double rays_per_kilocycle(std::uint64_t rays, double cycles) {
 
 /// True if the parts of a class had nothing to do for more than half of the run.
 inline bool idle(const cycle::CycleResult& run, std::string_view part) {
-  constexpr double kIdle = 0.5;
-  for (const cycle::ClassUse& use : run.uses)
-    if (use.name == part) return static_cast<double>(use.busy) <= kIdle * use.parts * static_cast<double>(run.cycles);
-  return false;
+  return busy(run, part) <= 0.5;
 }
 
 /// The classes that are relaxed together: those of idle parts, and those of which nobody counts how busy they are,
@@ -58,12 +57,27 @@ inline std::vector<std::vector<std::size_t>> search_groups(const std::vector<Wha
 /// The parts of a group that may gain enough: halves, or single classes of a few, of which halves would spare nothing
 /// where two gain.
 inline std::vector<std::vector<std::size_t>> parts_of(const std::vector<std::size_t>& group) {
-  constexpr std::size_t kFew = 4;
+  constexpr std::size_t kFew = 5;
   const std::size_t each = group.size() <= kFew ? 1 : (group.size() + 1) / 2;
   std::vector<std::vector<std::size_t>> out;
   for (std::size_t at = 0; at < group.size(); at += each)
     out.emplace_back(group.begin() + static_cast<std::ptrdiff_t>(at),
                      group.begin() + static_cast<std::ptrdiff_t>(std::min(at + each, group.size())));
+  return out;
+}
+
+/// Leaves out the classes of these groups that cannot gain so much by what is known of them.
+inline void leave_out(std::vector<std::vector<std::size_t>>& groups, const std::vector<Gain>& gains, double enough) {
+  for (std::vector<std::size_t>& group : groups)
+    std::erase_if(group, [&](std::size_t i) { return gains[i].high < enough; });
+  std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.empty(); });
+}
+
+/// The greatest gain of a class that was relaxed alone.
+inline double greatest_alone(const std::vector<Gain>& gains) {
+  double out = 0;
+  for (const Gain& gain : gains)
+    if (gain.together == 1) out = std::max(out, gain.gain);
   return out;
 }
 
@@ -76,8 +90,16 @@ inline void greatest_first(const std::vector<Gain>& gains, std::vector<std::size
 inline std::optional<std::size_t> named_gain(const std::vector<Gain>& gains) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < gains.size(); ++i)
-    if (worth_naming(gains[i].gain, gains[i].low) && (!best || gains[i].gain > gains[*best].gain)) best = i;
+    if (gains[i].together == 1 && worth_naming(gains[i].gain, gains[i].low) &&
+        (!best || gains[i].gain > gains[*best].gain))
+      best = i;
   return best;
+}
+
+/// True if a class is worth naming although the run's cycles differ so from those that the pilot foretells.
+inline bool stands_out(const std::vector<Gain>& gains, double deviation) {
+  constexpr double kMuch = 0.4;
+  return std::abs(deviation) <= kMuch && named_gain(gains);
 }
 
 /// What the class that a verdict would name surely gains; 0 if it would name none.
@@ -115,13 +137,6 @@ inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gai
 /// frame is not like it, since no pilot knows when the frame reads a line first.
 inline bool cold(const cycle::CycleResult& run, std::uint64_t slots) {
   return !idle(run, "memory_bandwidth") && reads_between(run, slots).first_share() >= kColdShare;
-}
-
-/// Paths of the pilot that follows one that is not like the run: twice as many, or the whole frame if it is cold or
-/// takes no more than that. The frame's run as configured is known.
-inline std::uint64_t paths_after_unlike(std::uint64_t pilot, std::uint64_t frame, std::size_t classes, bool cold) {
-  const std::uint64_t doubled = 2 * pilot * (classes + 1);
-  return classes > 0 && (cold || doubled >= classes * frame) ? frame : std::min(frame, 2 * pilot);
 }
 
 /// A part matters if more of it gains something, or if it is busy for most of the run.

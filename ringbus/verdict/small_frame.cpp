@@ -11,13 +11,12 @@ namespace {
 
 constexpr double kLeastBetween = 0.75;
 
-/// Two digits, rounded up.
-std::uint64_t round_up(double value) {
+}  // namespace
+
+std::uint64_t two_digits_up(double value) {
   const double unit = std::pow(10, std::max(0.0, std::floor(std::log10(std::max(1.0, value))) - 1));
   return static_cast<std::uint64_t>(std::ceil(value / unit) * unit);
 }
-
-}  // namespace
 
 std::optional<SmallFrame> small_frame(const cycle::CycleResult& result, std::uint64_t rays, std::uint64_t paths,
                                       std::uint64_t slots) {
@@ -31,7 +30,7 @@ std::optional<SmallFrame> small_frame(const cycle::CycleResult& result, std::uin
                drained =
                    std::max(static_cast<double>(rays - begun), paths < slots ? each * static_cast<double>(slots) : 0.0),
                least = (static_cast<double>(filled) + drained) / (1 - kLeastBetween);
-  return SmallFrame{paths, slots, between, round_up(least / each)};
+  return SmallFrame{paths, slots, between, two_digits_up(least / each)};
 }
 
 }  // namespace carousel::ringbus

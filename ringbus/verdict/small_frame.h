@@ -7,6 +7,9 @@
 
 namespace carousel::ringbus {
 
+/// Rounded up to two digits.
+std::uint64_t two_digits_up(double value);
+
 /// A frame that mostly fills its machine with rays and drains it.
 struct SmallFrame {
   std::uint64_t paths = 0, slots = 0;  ///< paths, or rays of a list, that the frame begins; ray slots of the machine

@@ -1,6 +1,7 @@
 // The verdict of `carousel run`, tried as its user would: on whole frames larger than the pilot, half sky and half
 // ground.
 #include <algorithm>
+#include <cmath>
 #include <thread>
 #include <tuple>
 
@@ -19,6 +20,14 @@ namespace carousel::verdict_run_test {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+/// How many times the rays of the run the search simulated, by its log.
+double times_of_run(const std::string& log) {
+  const std::string before = "rays, ", after = " times those of the run";
+  const std::size_t end = log.find(after), begin = log.rfind(before, end) + before.size();
+  EXPECT_NE(end, std::string::npos) << log;
+  return end == std::string::npos ? 0 : std::stod(log.substr(begin, end - begin));
+}
 
 class VerdictRun : public testing::Test {
  protected:
@@ -69,21 +78,19 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
 // The second frame finds in the caches what the first one left there, and the search finds it there too: else all that
 // it simulates would wait for a memory that the frame hardly needed.
 TEST_F(VerdictRun, TheLastFrameOfASeriesIsSearchedWithItsWarmCaches) {
-  const Json report = run(kTerrain, {"engine.what_if=true", "image.width=48", "image.height=36", "image.samples=1",
-                                     "frames={count: 2, step: 0, update: none}", "memory.l2_kib=4096",
-                                     "memory.shape_buffer_kib=4", "memory.dram_latency_cycles=4000"});
+  const Json report =
+      run(kTerrain, {"engine.what_if=true", "image.width=64", "image.height=48", "image.samples=1",
+                     "rays.slots_per_resource=16", "frames={count: 2, step: 0, update: none}", "memory.l2_kib=4096",
+                     "memory.shape_buffer_kib=4", "memory.dram_latency_cycles=20000"});
   const Json& rows = report["frames"]["rows"];
-  ASSERT_GT(rows[0]["cycles"].get<double>(), 1.5 * rows[1]["cycles"].get<double>()) << rows.dump(1);
-  ASSERT_TRUE(report["bottleneck"]["whole_frame"]) << report["bottleneck"].dump(1);
-  ASSERT_FALSE(report["bottleneck"]["gains"].empty()) << report["bottleneck"].dump(1);
-  for (const Json& gain : report["bottleneck"]["gains"]) EXPECT_GT(gain["gain"], -0.1) << gain.dump();
-  EXPECT_TRUE(report["cycle_noise"]["whole_frame"]);
-  EXPECT_LT(report["cycle_noise"]["fraction"], 0.3);
+  ASSERT_GT(rows[0]["cycles"].get<double>(), 3 * rows[1]["cycles"].get<double>()) << rows.dump(1);
+  EXPECT_EQ(report["bottleneck"]["limits"], "triangle_tests") << report["bottleneck"].dump(1);
+  EXPECT_LT(std::abs(report["bottleneck"]["deviation"].get<double>()), 0.3);
 }
 
 // The search is of the whole machine, whose noise says nothing of cycles in which a resource stopped.
 TEST_F(VerdictRun, ARunInWhichAResourceStopsHasNoNoise) {
-  const std::vector<std::string> small{"engine.what_if=true", "image.width=48", "image.height=36", "image.samples=1",
+  const std::vector<std::string> small{"engine.what_if=true", "image.width=96", "image.height=72", "image.samples=1",
                                        "rays.slots_per_resource=16"};
   std::vector<std::string> stops = small;
   stops.emplace_back("faults={resource: {kind: stop, number: 1, after_rays: 200}}");
@@ -109,8 +116,66 @@ TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
   EXPECT_GT(samples, 1u);
   const Json large = run(kTerrain, {"engine.what_if=true", "image.width=20", "image.height=15",
                                     "image.samples=" + std::to_string(samples), "rays.slots_per_resource=64"});
-  EXPECT_FALSE(large["bottleneck"].contains("frame_too_small")) << large["bottleneck"].dump(1);
-  EXPECT_FALSE(large["bottleneck"]["gains"].empty());
+  // It may still be too small for a search.
+  EXPECT_THAT(large["bottleneck"]["verdict"].get<std::string>(), testing::Not(testing::HasSubstr("fill and drain")));
+}
+
+// The machine is full for most of this frame, but each pilot would be a good part of it.
+TEST_F(VerdictRun, AFrameThatIsTooSmallForASearchIsToldSoWithItsBusiestPart) {
+  const std::vector<std::string> frame{"engine.what_if=true", "image.width=32", "image.height=24",
+                                       "rays.slots_per_resource=16"};
+  std::vector<std::string> sets = frame;
+  sets.emplace_back("image.samples=1");
+  const Json small = run(kTerrain, sets);
+  EXPECT_EQ(schema_problems(report::report_schema(), small), std::vector<std::string>{});
+  const Json& told = small["bottleneck"];
+  EXPECT_EQ(told["limits"], "");
+  EXPECT_TRUE(told["gains"].empty());
+  ASSERT_TRUE(told.contains("frame_too_small")) << told.dump(1);
+  EXPECT_EQ(told["frame_too_small"]["between"], 1);
+  EXPECT_EQ(told["frame_too_small"]["busiest"], "triangle_tests");
+  EXPECT_NEAR(told["frame_too_small"]["busy"].get<double>(), small["bound"]["reached"].get<double>(), 1e-6);
+  EXPECT_THAT(told["verdict"].get<std::string>(), testing::HasSubstr("too few for a search"));
+  const auto least = told["frame_too_small"]["least_paths"].get<std::uint64_t>();
+  sets.back() = fmt::format("image.samples={}", (least + 767) / 768);
+  const Json large = run(kTerrain, sets)["bottleneck"];
+  EXPECT_FALSE(large.contains("frame_too_small")) << large.dump(1);
+  EXPECT_FALSE(large["gains"].empty());
+}
+
+TEST_F(VerdictRun, ASearchKeepsItsBudgetAlsoOfSmallFrames) {
+  int searched = 0;
+  for (const char* size : {"40", "56", "72", "96", "128"})
+    for (const char* slots : {"16", "64"}) {
+      program_.write("a.yaml", kTerrain);
+      const Outcome outcome = program_.run(
+          {"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.samples=1", "--set",
+           std::string("image.width=") + size, "--set", std::string("image.height=") + size, "--set",
+           std::string("rays.slots_per_resource=") + slots, "--force", "--out", "out", "--log-level", "debug"});
+      ASSERT_EQ(outcome.status, 0) << outcome.err;
+      if (Json::parse(program_.read("out/report.json"))["bottleneck"].contains("frame_too_small")) continue;
+      EXPECT_LE(times_of_run(outcome.err), 1.2) << size << " pixels, " << slots << " slots";
+      ++searched;
+    }
+  EXPECT_GE(searched, 4);
+}
+
+// Shading is busy for a small part of the time, and storage is never short. No simulation is spent on them, and doubled
+// for real they gain no more than the ledger says.
+TEST_F(VerdictRun, WhatTheLedgerBoundsIsNotSimulated) {
+  const Json report = run(kTerrain, {"engine.what_if=true"});
+  int bounded = 0;
+  for (const Json& gain : report["bottleneck"]["gains"]) {
+    if (gain["together"] != 0) continue;
+    ++bounded;
+    if (gain["name"] != "dispatch" && gain["name"] != "shading" && gain["name"] != "packets_in_flight") continue;
+    std::vector<std::string> sets;
+    for (const Json& set : gain["sets"]) sets.push_back(set);
+    const Json again = run(kTerrain, sets);
+    const double real = report["engine"]["cycles"].get<double>() / again["engine"]["cycles"].get<double>() - 1;
+    EXPECT_LE(real, gain["high"].get<double>()) << gain.dump();
+  }
+  EXPECT_GE(bounded, 3) << report["bottleneck"].dump(1);
 }
 
 // Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are
@@ -134,32 +199,6 @@ TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
   const Json tests = run(kTerrain, frame)["bottleneck"];
   EXPECT_FALSE(tests.contains("cold_caches")) << tests["cold_caches"].dump();
   EXPECT_EQ(tests["limits"], "triangle_tests") << tests.dump(1);
-}
-
-// A pilot of a frame of few rays is the frame. Its gains are measured, and still differ with the random numbers of the
-// picture.
-TEST_F(VerdictRun, TheIntervalOfAWholeFrameHoldsTheGainsOfOtherSeeds) {
-  if (!long_tests_run()) GTEST_SKIP() << kInSoak;
-  const std::vector<std::string> whole{"image.width=48", "image.height=36", "image.samples=1"};
-  std::vector<std::string> searched = whole;
-  searched.push_back("engine.what_if=true");
-  const Json report = run(kTerrain, searched);
-  const Json& bottleneck = report["bottleneck"];
-  ASSERT_TRUE(bottleneck["whole_frame"]) << bottleneck.dump(1);
-  ASSERT_EQ(bottleneck["limits"], "triangle_tests") << bottleneck.dump(1);
-  EXPECT_EQ(bottleneck["replicates"], 2);
-  const Json& named = bottleneck["gains"][0];
-  EXPECT_LT(named["low"], named["high"]);
-  int within = 0;
-  for (const char* seed : {"image.seed=2", "image.seed=3", "image.seed=4", "image.seed=5", "image.seed=6"}) {
-    std::vector<std::string> sets = whole;
-    sets.emplace_back(seed);
-    const double before = run(kTerrain, sets)["engine"]["cycles"].get<double>();
-    for (const Json& set : named["sets"]) sets.push_back(set);
-    const double gain = before / run(kTerrain, sets)["engine"]["cycles"].get<double>() - 1;
-    within += named["low"].get<double>() <= gain && gain <= named["high"].get<double>();
-  }
-  EXPECT_GE(within, 4);
 }
 
 // The sky comes first and costs shading alone; with few workers it limits the machine, and then triangle tests do.
@@ -192,14 +231,6 @@ TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
     EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format("threads: {}", run)));
     EXPECT_THAT(outcome.err, testing::HasSubstr(fmt::format("search: up to {} simulations at once", beside)));
   }
-}
-
-/// How many times the rays of the run the search simulated, by its log.
-double times_of_run(const std::string& log) {
-  const std::string before = "rays, ", after = " times those of the run";
-  const std::size_t end = log.find(after), begin = log.rfind(before, end) + before.size();
-  EXPECT_NE(end, std::string::npos) << log;
-  return end == std::string::npos ? 0 : std::stod(log.substr(begin, end - begin));
 }
 
 // Nothing comes near to what more testers gain here, so that no other class is simulated for the larger pilot: by six

@@ -70,6 +70,36 @@ TEST(JudgeGains, SaysThatTheFrameIsTooSmall) {
             "between); from some 36,000 paths on, or with fewer slots, it can be said");
 }
 
+TEST(JudgeGains, AClassOfAGroupIsARivalAndNotNamed) {
+  Bottleneck found{.gains = {gain("links", 0.5, 0.4, 0.6), gain("boxes", 0.3, 0.2, 0.4), gain("ports", 0, 0, 0.25)}};
+  found.gains[0].together = 3;
+  found.gains[2].together = 0;
+  const Bottleneck b = judge_gains(found);
+  EXPECT_EQ(b.limits, "boxes");
+  EXPECT_THAT(b.rivals, ElementsAre("links", "ports"));
+}
+
+TEST(JudgeGains, SaysThatASearchWouldTakeTooLong) {
+  const Bottleneck b = judge_gains({.frame_too_small = FrameTooSmall{768, 64, 1, 3200, "shading", 0.9}});
+  EXPECT_THAT(b.limits, IsEmpty());
+  EXPECT_EQ(
+      b.verdict,
+      "not found out: 768 paths for 64 ray slots are too few for a search that takes no longer than the run; from "
+      "some 3,200 paths on, or with fewer slots, it can be said; shading was the busiest part, 90 % of the time");
+}
+
+TEST(JudgeGains, OfColdCachesItNamesAClassThatMayGainAsMuch) {
+  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 460, "boxes"},
+                                    .gains = {gain("memory", 0.48, 0.45, 0.51), gain("boxes", 0.4, 0.3, 0.5)}});
+  EXPECT_EQ(b.limits, "boxes");
+  EXPECT_THAT(b.rivals, ElementsAre("memory"));
+  EXPECT_EQ(
+      b.verdict,
+      "boxes: twice boxes gains +40.0 % (+30.0 to +50.0 %); not to be told apart from it: memory with +48.0 % "
+      "(+45.0 to +51.0 %); 46 % of the lines that memory reads are read for the first time, and memory gains less "
+      "in a larger picture");
+}
+
 TEST(JudgeGains, NamesNothingOfColdCaches) {
   const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 460},
                                     .gains = {gain("boxes", 0.5, -0.1, 0.9), gain("memory", 0.48, 0.45, 0.51)}});

@@ -190,8 +190,8 @@ TEST(Foretell, AKnownDeviationWidensTheInterval) {
   const auto ten = [](std::uint64_t) { return 10.0; };
   const CycleResult base = machine(4000, 0, ten);
   const Estimate gain = Foretelling({&base, 4000}, 100000, 500).gain({&base, 4000}, 0.06);
-  EXPECT_NEAR(gain.low, -0.036, 1e-6);  // 1.2 times half of it
-  EXPECT_NEAR(gain.high, 0.036, 1e-6);
+  EXPECT_NEAR(gain.low, -0.0225, 1e-6);  // three eighths of it
+  EXPECT_NEAR(gain.high, 0.0225, 1e-6);
 }
 
 // Blocks that differ are one error, a known deviation another: together they are their root of squares.
@@ -205,7 +205,7 @@ TEST(Foretell, AKnownDeviationAndTheErrorOfBlocksAreIndependent) {
     const Estimate gain = foretelling.gain({&relaxed, 4000}, deviation);
     return (gain.high - gain.low) / 2;
   };
-  const double value = foretelling.gain({&relaxed, 4000}, 0).value, off = 1.2 * 0.06 * (1 + value) * (1 + value) / 2;
+  const double value = foretelling.gain({&relaxed, 4000}, 0).value, off = 0.75 * 0.06 * (1 + value) * (1 + value) / 2;
   ASSERT_GT(half(0), 0.001);
   EXPECT_NEAR(half(0.06), std::hypot(half(0), off), 1e-9);
 }

@@ -3,11 +3,14 @@
 #include "ringbus/verdict/pilot_runs.h"
 
 #include <atomic>
+#include <limits>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/verdict/search_budget.h"
+#include "ringbus/verdict/search_choices.h"
 #include "tests/ringbus/support/test_machine.h"
 
 namespace carousel::ringbus {
@@ -84,6 +87,68 @@ TEST(PilotRuns, HandOnAnError) {
     return pilot.scene.new_workload();
   };
   EXPECT_THROW(pilot.simulate(3, pilots, {}), std::runtime_error);
+}
+
+cycle::CycleResult run_of(double shading_busy, Cycle memory, Cycle latency) {
+  cycle::CycleResult out;
+  out.cycles = 1000;
+  out.uses = {{"shading", 4, static_cast<Cycle>(4000 * shading_busy)}, {"l2_port", 2, 1800}};
+  out.tiles.resize(2);
+  for (cycle::TileResult& tile : out.tiles) {
+    tile.states[static_cast<std::size_t>(cycle::TileState::kMemory)] = memory;
+    tile.testing.latency = latency;
+  }
+  return out;
+}
+
+// Busy for x of the time in the mean, and for twice that where it is worst: half of that is saved, 1 / (1 - x) - 1, and
+// 3 % for the schedule.
+TEST(LedgerBound, FollowsFromWhatPartsAreBusyWith) {
+  EXPECT_NEAR(most_gain(run_of(0.2, 0, 0), "shading"), 0.25 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 0, 0), "shading"), 0.03, 1e-12);
+  EXPECT_EQ(most_gain(run_of(0.5, 0, 0), "shading"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(most_gain(run_of(0, 0, 0), "contexts"), std::numeric_limits<double>::infinity());
+}
+
+TEST(LedgerBound, FollowsFromWhatResourcesWaitFor) {
+  // Of 100 cycles that a resource waits, others wait for 50 more.
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "memory_latency"), 0.15 / 0.85 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "test_latency"), 0.3 / 0.7 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "packets_in_flight"), 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "l2_port"), 0.15 / 0.85 + 0.03, 1e-12)
+      << "busy for 90 %, seldom waited for";
+  cycle::CycleResult warps = run_of(0, 0, 0);
+  warps.tiles[1].warps.emplace();
+  EXPECT_EQ(most_gain(warps, "memory_latency"), std::numeric_limits<double>::infinity());
+}
+
+// A pilot of 100 of 1,000 paths, doubled, takes a fifth of the run for the machine as configured and for each class.
+TEST(SearchBudget, APilotIsDoubledForAsManyClassesAsItHasRaysFor) {
+  const SearchBudget budget{1000, 5000};
+  const auto classes_for = [&](double left, std::vector<std::size_t> classes) {
+    const std::uint64_t paths = doubled(budget, 100, left, classes);
+    EXPECT_TRUE(paths == 0 || paths == 200) << paths;
+    return paths == 0 ? -1 : static_cast<int>(classes.size());
+  };
+  EXPECT_EQ(classes_for(0.61, {7, 8, 9}), 2);
+  EXPECT_EQ(classes_for(0.59, {7, 8, 9}), 1);
+  EXPECT_EQ(classes_for(0.39, {7, 8, 9}), -1);
+  EXPECT_EQ(classes_for(0.21, {}), 0);
+  EXPECT_EQ(classes_for(0.19, {}), -1);
+  std::vector<std::size_t> one{7};
+  EXPECT_EQ(doubled(budget, 600, 9, one), 1000) << "no more than the frame";
+}
+
+TEST(SearchChoices, AClassStandsOutUnlessCyclesAreFarOff) {
+  Gain gain;
+  gain.gain = 0.5;
+  gain.low = 0.1;
+  EXPECT_TRUE(stands_out({gain}, 0.39));
+  EXPECT_TRUE(stands_out({gain}, -0.39));
+  EXPECT_FALSE(stands_out({gain}, 0.41));
+  EXPECT_FALSE(stands_out({gain}, -0.41));
+  gain.low = -0.01;
+  EXPECT_FALSE(stands_out({gain}, 0.1));
 }
 
 }  // namespace
