@@ -181,8 +181,9 @@ TEST_F(VerdictRun, WhatTheLedgerBoundsIsNotSimulated) {
 // Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are
 // read again and again, as in a frame of any size. Where tests limit the same frame, its first reads do not matter.
 TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
-  const std::vector<std::string> frame{"engine.what_if=true", "image.width=64", "image.height=48",
-                                       "memory.l2_kib=4096"};
+  const std::vector<std::string> frame{
+      "engine.what_if=true",        "image.width=96",    "image.height=72", "scene.triangles=20000",
+      "rays.slots_per_resource=16", "memory.l2_kib=4096"};
   std::vector<std::string> slow = frame;
   for (const char* set : {"memory.dram_bytes_per_cycle=1", "memory.shape_buffer_kib=4", "testers.triangle.units=8",
                           "testers.triangle.interval_cycles=1", "testers.box.units=16", "shading.workers=8"})
