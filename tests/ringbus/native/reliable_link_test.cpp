@@ -116,6 +116,41 @@ TEST(ReliableLink, PlacesComeBackThoughAcknowledgementsAreLost) {
   EXPECT_GE(link->free_places(), 7u);
 }
 
+/// Sends `packets` in turns of both ends; the receiver takes four every `pause` turns.
+LinkFaultCounts send_in_turns(const Config& config, std::uint32_t packets, std::uint32_t pause) {
+  const std::unique_ptr<Link> link = make_link(config, 1, ResourceId(0), ResourceId(1));
+  std::array<PacketId, 4> got;
+  std::uint32_t sent = 0, taken = 0;
+  for (std::uint32_t turn = 0; taken < packets && turn < 100 * packets; ++turn) {
+    (void)link->tick();
+    for (PacketId next(sent); sent < packets && link->try_send({&next, 1}) == 1; next = PacketId(sent)) ++sent;
+    link->tick_receiver();
+    if (turn % pause != 0) continue;
+    const std::size_t count = link->try_receive(got);
+    for (std::size_t i = 0; i < count; ++i) EXPECT_EQ(got[i].value, taken++);
+  }
+  EXPECT_EQ(taken, packets);
+  return link->faults();
+}
+
+// A receiver that takes its packets one by one keeps the others, though they have left the wire.
+TEST(ReliableLink, SendsNothingAgainThatWasNotLost) {
+  for (const std::uint32_t pause : {1u, 2u, 3u}) {
+    const LinkFaultCounts counts = send_in_turns(faulty(1e-12, 0, 0, 0, 0), 2000, pause);
+    EXPECT_EQ(counts.dropped, 0u);
+    EXPECT_EQ(counts.resent, 0u) << pause;
+    EXPECT_EQ(counts.discarded, 0u) << pause;
+  }
+}
+
+TEST(ReliableLink, ALossCostsOneFrame) {
+  const LinkFaultCounts counts = send_in_turns(faulty(0.02, 0, 0, 0, 0), 5000, 1);
+  EXPECT_GT(counts.dropped, 100u);
+  EXPECT_GE(counts.resent, counts.dropped / 3);  // acknowledgements are lost as well, and need nothing sent again
+  EXPECT_LE(counts.resent, counts.dropped);
+  EXPECT_LE(counts.discarded, counts.dropped / 10);
+}
+
 Packet some_packet(std::uint32_t number) {
   const RayIdLayout layout(64);
   Packet p;
