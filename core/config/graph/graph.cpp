@@ -1,6 +1,7 @@
 #include "core/config/graph/graph.h"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 #include <optional>
 #include <string_view>
@@ -251,6 +252,13 @@ class Drawing {
     }
   }
 
+  /// Tells whether something may go over both of two links. One for nothing has its own fault.
+  static bool may_meet(const std::vector<Carried>& a, const std::vector<Carried>& b) {
+    std::vector<Carried> common;
+    std::ranges::set_intersection(a, b, std::back_inserter(common));
+    return a.empty() || b.empty() || !common.empty();
+  }
+
   void add(const GraphLink& link, std::uint32_t from, std::uint32_t to) {
     add_one_way(link, from, to);
     if (link.both) add_one_way(link, to, from);
@@ -260,19 +268,20 @@ class Drawing {
     const auto name = [&](std::uint32_t node) -> const std::string& { return graph_.nodes[node].name; };
     if (from == to)
       return link_issue("", fmt::format("a link leads from {0} to {0}; expected another node", name(from)));
-    std::vector<LaneEntry>& beside = entries_[{from, to}];
-    const auto same = std::ranges::find_if(beside, [&](const LaneEntry& other) {
+    std::vector<Carried> carries = link.carries;
+    std::ranges::sort(carries);
+    std::vector<Beside>& beside = entries_[{from, to}];
+    const auto same = std::ranges::find_if(beside, [&](const Beside& other) {
       constexpr std::int64_t kAll = Graph::Link::kAllLanes;
-      return lane_ == kAll || other.lane == kAll || other.lane == lane_;
+      return (lane_ == kAll || other.lane == kAll || other.lane == lane_) && may_meet(carries, other.carries);
     });
     if (same != beside.end())
       return link_issue("", fmt::format("a second link from {} to {}, beside that of topology.links.{}; expected one, "
-                                        "twice as wide for example, or several with lanes of their own",
+                                        "twice as wide for example, or several with lanes of their own, or that carry "
+                                        "something else",
                                         name(from), name(to), same->entry));
-    beside.push_back({lane_, entry_});
+    beside.push_back({lane_, entry_, carries});
     const LinkConfig& all = config_.link;
-    std::vector<Carried> carries = link.carries;
-    std::ranges::sort(carries);
     for (std::int64_t ring = 0; ring < link.stops.rings; ++ring)
       graph_.links.push_back({from, to, link.latency_cycles.value_or(all.latency_cycles),
                               link.bytes_per_cycle.value_or(all.bytes_per_cycle), link.depth.value_or(all.depth),
@@ -283,12 +292,13 @@ class Drawing {
   const TopologyConfig& config_;
   std::vector<GraphIssue>& issues_;
   Graph graph_;
-  struct LaneEntry {
+  struct Beside {
     std::int64_t lane;
     std::size_t entry;
+    std::vector<Carried> carries;
   };
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<LaneEntry>> entries_;  // by the link's nodes
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> hops_;                // by node and destination
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::vector<Beside>> entries_;  // by the link's nodes
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::size_t> hops_;             // by node and destination
   std::size_t entry_ = 0;
   std::int64_t lane_ = Graph::Link::kAllLanes;  // of the links that are added
 };

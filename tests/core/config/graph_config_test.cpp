@@ -137,7 +137,7 @@ INSTANTIATE_TEST_SUITE_P(
                   "topology.links: there is no way from b to a"},
         BadConfig{"TwoLinks",
                   "topology: {shape: graph, nodes: [{name: r, count: 3}], links: [{ring: 'r[*]'}, {from: 'r[1]', to: "
-                  "'r[2]'}]}\n",
+                  "'r[2]', carries: [packets, shapes]}]}\n",
                   "topology.links.1: a second link from r[1] to r[2], beside that of topology.links.0"},
         BadConfig{
             "ToItself",
