@@ -59,6 +59,7 @@ std::string NodeNames::unknown(std::string_view name) const {
     const bool group = groups_.find(*near)->second.size.has_value();
     return text + fmt::format("; did you mean '{}{}'?", *near, group ? "[*]" : "");
   }
+  if (known.empty()) return text + "; no node has a name that can be read";
   constexpr std::size_t kShown = 12;
   known.resize(std::min(known.size(), kShown));
   return text + fmt::format("; known are {}", fmt::join(known, ", "));

@@ -109,5 +109,15 @@ TEST(GraphWays, UpDownNamesTheWayThatIsMissing) {
   EXPECT_THAT(issues, ElementsAre(HasSubstr("topology.links: there is no way that goes up and then down from r[")));
 }
 
+TEST(GraphWays, NamesAreAskedForWhereThereAreNone) {
+  config::NodeNames names;
+  std::string error;
+  EXPECT_TRUE(names.find("q", error).empty());
+  EXPECT_EQ(error, "expected a node, found 'q'; no node has a name that can be read");
+  EXPECT_TRUE(names.add("ring", 0, 3));
+  EXPECT_TRUE(names.find("q", error).empty());
+  EXPECT_EQ(error, "expected a node, found 'q'; known are ring");
+}
+
 }  // namespace
 }  // namespace carousel::graph_ways_test
