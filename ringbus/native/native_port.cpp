@@ -22,6 +22,12 @@ std::optional<std::uint64_t> stops_after(const FaultsConfig::Resource& fault, Re
   return static_cast<std::uint64_t>(fault.after_rays);
 }
 
+/// It is a packet process that serves resources.
+bool collects_for_others(const Topology& topology, ResourceId id) {
+  const std::vector<std::uint32_t>& managers = topology.manager_of();
+  return !managers.empty() && managers[id.value] == id.value;
+}
+
 /// A graph that is a ring, or one in each lane, follows the rules of rings (FlowRules), among them the bubble: packets
 /// of a direction come and leave by its port.
 bool is_rings(const Topology& topology) {
@@ -65,7 +71,7 @@ NativePort::NativePort(ResourceId id, NativeMachine& machine, const NativePortSe
 }
 
 bool NativePort::step() {
-  if (stops_after_ && rays_completed_ >= *stops_after_) stop();
+  if (stops_after_ && rays_done_ >= *stops_after_) stop();
   if (logic_.stopped()) {
     bool moved = tick_links();
     schedule_point();
@@ -76,7 +82,7 @@ bool NativePort::step() {
   // Relaxed, and no read-modify-write: it has one writer.
   beats_.store(beats_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
   if (!fault_) return step_now();
-  return fault_->step(rays_completed_, [this] { return step_now(); });
+  return fault_->step(rays_done_, [this] { return step_now(); });
 }
 
 bool NativePort::tick_links() {
@@ -267,6 +273,7 @@ bool NativePort::admit() {
   for (RayGroup& group : arrived_) wait(std::move(group));
   arrived_.clear();
   const bool admitted = logic_.admission.admit(resource_, [this](std::span<const RayId> rays) {
+    if (collects_for_others(machine_.topology, resource_.id())) rays_done_ += rays.size();
     if (recorder_ != nullptr) [[unlikely]]
       note_admitted(rays);
   });
@@ -369,7 +376,7 @@ void NativePort::flush_completed(bool all) {
   if (sink_ != nullptr)
     sink_->record(
         {.kind = EventKind::kComplete, .resource = resource_.id(), .rays = static_cast<std::uint32_t>(done.size())});
-  rays_completed_ += done.size();
+  rays_done_ += done.size();
   if (recorder_ != nullptr) [[unlikely]]
     note_done(done);
   if (gate_ != nullptr) gate_->send_results(resource_.id(), done, resource_.freed_slots());

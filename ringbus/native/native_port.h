@@ -141,8 +141,8 @@ class NativePort {
   RayRounds rounds_;
   bool links_fail_;
   std::optional<ResourceFault> fault_;
-  std::optional<std::uint64_t> stops_after_;  // rays completed here
-  std::uint64_t rays_completed_ = 0;
+  std::optional<std::uint64_t> stops_after_;  // rays_done_
+  std::uint64_t rays_done_ = 0;  // completed here; taken in, if it collects for others, where none completes
   std::atomic<std::uint64_t> beats_{0}, visits_{0};
   std::uint64_t visits_now_ = 0;  // published once a step
   std::vector<InPort> in_ports_;

@@ -136,12 +136,14 @@ TEST(PacketProcessConfig, FaultsHaveAPlace) {
               ElementsAre(HasSubstr("faults.resource.number: when a packet_process stops, another one has to continue, "
                                     "and there is no other; expected a resource from 0 to 3, found 4")));
   EXPECT_TRUE(refusal(kOne, kStar, fault("pause", 4)).empty());
-  EXPECT_THAT(texts(issues_of("scene: {builtin: cornell}\nengine: {kind: native}\ntopology: {shape: graph, nodes: "
-                              "[{name: r, count: 2}, {name: p, kind: packet_process, serves: 'r[*]'}], links: [{from: "
-                              "'r[*]', to: p, both: true}]}\n" +
-                              fault("pause", 2))),
+  const std::string native =
+      "scene: {builtin: cornell}\nengine: {kind: native}\ntopology: {shape: graph, nodes: [{name: r, count: 2}, {name: "
+      "p, kind: packet_process, serves: 'r[*]'}], links: [{from: 'r[*]', to: p, both: true}]}\n";
+  EXPECT_THAT(texts(issues_of(native + fault("stop", 2))),
               ElementsAre(HasSubstr("faults.resource.number: in the native engine a packet_process that serves "
-                                    "resources has no faults yet; expected a resource from 0 to 1, found 2")));
+                                    "resources pauses, and does not stop yet; expected a resource from 0 to 1, found "
+                                    "2")));
+  EXPECT_THAT(texts(issues_of(native + fault("pause", 2))), testing::IsEmpty());
   EXPECT_THAT(
       texts(issues_of("scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology: {shape: graph, nodes: "
                       "[{name: r}, {name: p, kind: packet_process, serves: r}, {name: l2, kind: cache}], links: "

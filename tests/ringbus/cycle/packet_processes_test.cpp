@@ -61,6 +61,19 @@ TEST_F(PacketProcesses, AreTheSameMachineInTheNativeEngine) {
   }
 }
 
+TEST_F(PacketProcesses, APauseOfOneIsFeltNatively) {
+  Cell cell;
+  cell.config =
+      load_config({"scene: {builtin: cornell}\nengine: {kind: native, clock_mhz: 1000}\n" + kRays + kNodes + kLinks +
+                       "faults: {resource: {kind: pause, number: 7, after_rays: 20, cycles: 400000000}}\n",
+                   "m.yaml"})
+          .config;
+  cell.threads = 1;
+  const Outcome out = run_cell(scene_, cell);
+  EXPECT_EQ(out.fault, "");
+  EXPECT_GE(out.result.wall_seconds, 0.4);
+}
+
 // Rays of a bundle live at one resource of the packet process that has its ID.
 TEST_F(PacketProcesses, CollectBundles) {
   for (const char* set : {"bundles.lifetime=persistent", "bundles.lifetime=reformed", "bundles.split=builder",
