@@ -3,6 +3,7 @@
 
     graph_rows.py CAROUSEL [--rows FILE.csv] [--graphs FOLDER_OR_FILE] [--only WORD]... [--part I/N] [--every]
     graph_rows.py --printed FILE... --write docs/internals/validation.md
+    graph_rows.py CAROUSEL --model ROUTER_MODEL --seeds N [--only WORD]... [--part I/N]
 
 A graph is FOLDER/NAME.txt with lines `node I`, `router I`, `link A B LATENCY`, `arc A B LATENCY`; or all of them stand
 in one file, each behind a line `graph NAME ...` (tests/data/booksim2_graphs.txt). A row is graph, flits, offered, vcs,
@@ -12,6 +13,9 @@ vc_buffer, speculative, mean_packet_latency, accepted_rate, status. Compared are
   - where more is offered than gets through (status saturated), the rate within 1 %.
 Rows between are shown with --every, and judged by none. Rows of networks without virtual channels are those with
 speculation (the others of one channel pass a packet every other cycle). Ends with status 1 if a row is missed.
+--model compares rows where more is offered than gets through with tests/validation/router_model.cpp: the mean of N
+seeds with its mean of N seeds, within 1 % or four standard errors. Each mean has the standard deviation of one seed
+behind it. The last number is how many of these the row, of one seed, is off.
 --printed reads what runs have printed, and --write puts a table of it into a page, between its marks."""
 import argparse
 import csv
@@ -91,6 +95,36 @@ def simulate(carousel, graph, row, folder, seed):
     return json.loads((folder / "out/report.json").read_text())["traffic"]
 
 
+def modelled(model, graph, row, seed):
+    """Flits accepted a node and cycle, by the model. A way back that is not drawn has a latency of 1000, as the rows'."""
+    links = {(a, b): latency for kind, a, b, latency in graph["links"]}
+    for kind, a, b, latency in graph["links"]:
+        links.setdefault((b, a), latency if kind == "link" else 1000)
+    text = f"{graph['nodes']} {graph['routers']}\n" + "".join(f"{a} {b} {links[a, b]}\n" for a, b in sorted(links))
+    words = [row[key] for key in ("offered", "flits", "vcs", "vc_buffer", "speculative")]
+    return float(subprocess.run([model, *words, str(seed)], input=text, capture_output=True, text=True, check=True).stdout)
+
+
+def against_model(carousel, model, graph, row, folder, seeds):
+    """A printed row, and whether the means agree."""
+    runs = [simulate(carousel, graph, row, folder, seed) for seed in range(1, seeds + 1)]
+    router = f"{row['vcs']} of {row['vc_buffer']}" + (", speculative" if row["speculative"] == "1" else "")
+    begin = f"| {row['graph']} | {row['flits']} | {float(row['offered']):g} | {router} |"
+    if None in runs:
+        return f"{begin} stopped |", True
+    ours = [run["accepted"] * int(row["flits"]) for run in runs]
+    second = [modelled(model, graph, row, seed) for seed in range(1, seeds + 1)]
+    means = [statistics.mean(ours), statistics.mean(second)]
+    spreads = [statistics.stdev(ours), statistics.stdev(second)]
+    theirs = float(row["accepted_rate"])
+    off = means[0] - means[1]
+    spread = max(statistics.mean(spreads), 1e-9)
+    agrees = abs(off) <= max(0.01 * means[1], 4 * spread * (2 / seeds) ** 0.5)
+    cells = [f"{theirs:.5f}"] + [f"{mean:.5f} ± {100 * sd / mean:.2f} %" for mean, sd in zip(means, spreads)]
+    cells += [f"{100 * off / means[1]:+.2f} %", f"{(theirs - statistics.mean(means)) / spread:+.1f}"]
+    return f"{begin} {' | '.join(cells)} |" + ("" if agrees else " missed"), agrees
+
+
 def judged(row, bound):
     """What a row is compared in: closed form, latency, rate, or nothing."""
     if row["status"] == "drained":
@@ -158,10 +192,13 @@ def main():
     parser.add_argument("--only", action="append", default=[], help="rows that have the word, as graph or key=value")
     parser.add_argument("--every", action="store_true", help="show rows that are not judged as well")
     parser.add_argument("--seeds", type=int, default=1, help="runs of each row, whose mean is compared")
+    parser.add_argument("--model", type=Path, help="the program of tests/validation/router_model.cpp")
     parser.add_argument("--part", default="0/1", help="I/N: every Nth row from the Ith")
     parser.add_argument("--printed", type=Path, nargs="+")
     parser.add_argument("--write", type=Path)
     arguments = parser.parse_args()
+    if arguments.model and arguments.seeds < 2:
+        parser.error("--model needs --seeds 2 or more")
     if arguments.printed:
         write(summary(line for file in arguments.printed for line in file.read_text().splitlines()), arguments.write)
         return 0
@@ -182,6 +219,14 @@ def main():
                 continue
             count += 1
             if count % parts != part:
+                continue
+            if arguments.model:
+                if row["status"] == "saturated":
+                    line, agrees = against_model(arguments.carousel, arguments.model, graph, row, Path(folder),
+                                                 arguments.seeds)
+                    lines.append(line)
+                    missed += not agrees
+                    print(line, flush=True)
                 continue
             theirs, ours, off = compare(arguments.carousel, graph, row, kind, Path(folder), arguments.seeds)
             bad = kind and (off is None or abs(off) > LIMITS[kind])
