@@ -7,7 +7,7 @@ const shape = (name, ...more) => machine('demo', [...cycle, `topology.shape=${na
 export const pages = {
   // All sections of a simulated machine: gains, cull planes, faults, verification, energy and area.
   // `drawn`: charts that must be there; others are left out where there is too little to show.
-  machine: {...machine('demo', [...cycle, 'image.width=16', 'engine.what_if=true', 'topology.resources=2', 'rays.slots_per_resource=4', 'cull_planes.count=2',
+  machine: {...machine('demo', [...cycle, 'image.width=48', 'image.height=48', 'engine.what_if=true', 'topology.resources=2', 'rays.slots_per_resource=4', 'cull_planes.count=2',
     'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'energy.profile=n45']),
     drawn: ['fig-energy', 'fig-area', 'fig-ray-time']},
   native: machine('bundle_tester', [...small, 'engine.kind=native', 'primary=raster']),

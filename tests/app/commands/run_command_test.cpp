@@ -97,7 +97,8 @@ TEST(RunCommand, GoesOnWithoutAResourceThatStops) {
 TEST(RunCommand, TheRasteriserLeavesTheRestToASimulatedMachine) {
   const Program program;
   program.write("small.yaml", kSmall);
-  const std::vector<std::string> raster{"run", "small.yaml", "--set", "primary=raster", "--out"};
+  const std::vector<std::string> raster{"run",   "small.yaml",     "--set", "primary=raster",  // enough for a search
+                                        "--set", "image.width=48", "--set", "image.height=36", "--out"};
   const auto with = [&](std::vector<std::string> more) {
     std::vector<std::string> all = raster;
     all.insert(all.end(), more.begin(), more.end());
