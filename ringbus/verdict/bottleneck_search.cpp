@@ -15,7 +15,6 @@
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
-#include "ringbus/verdict/search_budget.h"
 #include "ringbus/verdict/search_choices.h"
 #include "ringbus/verdict/small_frame.h"
 #include "ringbus/verdict/steady_state.h"

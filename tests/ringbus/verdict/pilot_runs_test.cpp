@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/cycle_engine.h"
-#include "ringbus/verdict/search_budget.h"
 #include "ringbus/verdict/search_choices.h"
 #include "tests/ringbus/support/test_machine.h"
 
