@@ -53,21 +53,19 @@ struct Bottleneck {
 /// Simulates the machine and each relaxed one on the same pilot, on the cycle engine, and foretells their times for the
 /// frame (foretell.h). A resource that stops is left out of account.
 ///
-/// Of some draws of a pilot that one is taken by which the machine as configured is most like the run. The classes of
-/// parts that the run kept busy for less than half of its time are relaxed together, and so are those that others wait
-/// for (search_choices.h); only where that may gain more than what is known already they are told apart, by halves or,
-/// of a few, one by one, unless the pilot is not like the run and may not tell their gain from nothing. This and each
-/// other class by itself is simulated for a first, small pilot. If it is sure then which class to name, the search
-/// ends. Else those that may be worth naming, at most six, are simulated for a larger one, the most promising first, as
-/// far as the pilots have then together about as many rays as the run. A pilot that is not like the run is doubled,
-/// once, whatever that takes, unless a class is worth naming in spite of the difference, which widens the intervals;
-/// where it is not, nothing is found out. The whole frame comes instead where it takes no more, or its caches are cold
-/// (search_choices.h).
+/// Of some draws of a pilot that one is taken by which the machine as configured is most like the run. A class whose
+/// gain the run's ledger bounds below what is worth naming is not simulated (search_choices.h). The others are
+/// simulated for a first, small pilot: those that stand alone, and then, as far as they may gain what another one
+/// surely does, groups of those that the run kept busy for less than half of its time, or that others wait for. A group
+/// that may gain enough is divided, unless the pilot is not like the run and may not tell its gain from nothing. If it
+/// is sure then which class to name, the search ends. Else those that may be worth naming, at most six, are simulated
+/// for a larger one, the most promising first. A pilot that is not like the run is doubled, unless a class is worth
+/// naming in spite of the difference, which widens the intervals; where it is not, nothing is found out. The whole
+/// frame comes instead, for one class, if its caches are cold. No simulation begins beyond the budget (pilot_runs.h),
+/// and a frame that is too small for it is not searched.
 ///
-/// Of a whole frame the classes that may be named are simulated with two other seeds of the picture besides, and their
-/// intervals widened to hold what they gain there. The machine as configured is simulated with run.noise_seeds other
-/// seeds, the first pilot or one twice as large or the whole frame, for the noise of the run's cycles; not where a
-/// resource stops.
+/// The machine as configured is simulated with run.noise_seeds other seeds, for the noise of the run's cycles, by a
+/// pilot as large as the budget allows; not where a resource stops.
 ///
 /// As many simulations run at once as options.threads; `make_pilot` and its workloads are then called by several
 /// threads at once, each workload by one. The answer does not depend on that. Throws as run_cycle.
