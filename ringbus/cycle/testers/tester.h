@@ -96,6 +96,11 @@ class Tester {
     return stages_.through(banks_, at, vectors, overlap_);
   }
   Cycle ray(Cycle at, const IntersectionCounts& counts) { return ray(at, ray_tests(counts)); }
+  /// As above, for passes of one kind alone, which is none of those that RayStages treats apart: decoders, any-hit
+  /// units and hit buffers.
+  Cycle ray(Cycle at, UnitKind kind, std::uint64_t passes) {
+    return banks_[kind].reserve_beside(at, starts(kind, passes, {1})).last;
+  }
   /// The end of the inversion of a matrix, which takes so many passes.
   Cycle invert(Cycle at, std::uint64_t passes) {
     count(UnitKind::kTransform, passes);

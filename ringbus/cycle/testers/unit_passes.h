@@ -43,6 +43,14 @@ struct RayTests {
   std::uint64_t passes(UnitKind kind) const {
     return tests[kind] + (kind == UnitKind::kProcedural ? std::uint64_t{program_cycles} : 0);
   }
+  /// Of sums over all strips so far, as ray_tests() says them modulo the width of each number, those of the last ones.
+  RayTests since(const RayTests& before) const {
+    RayTests out;
+    for (const auto [kind, passes] : tests) out.tests[kind] = static_cast<std::uint16_t>(passes - before.tests[kind]);
+    out.inversion = static_cast<std::uint8_t>(inversion - before.inversion);
+    out.program_cycles = program_cycles - before.program_cycles;
+    return out;
+  }
   friend bool operator==(const RayTests&, const RayTests&) = default;
 };
 inline RayTests ray_tests(const IntersectionCounts& counts) {

@@ -64,25 +64,31 @@ NextNode RayWalk::pop() {
   return top;
 }
 
-void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& tests) {
+void RayWalk::enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& counts) {
   instance_ = instance;
   if (!transforms_->moves(instance) || !transforms_->needs(slot, instance)) return;
-  tests.transforms = 1;
-  tests.transforms_in_double = transforms_->in_double(instance);
-  transforms_->invert(instance, tests);
+  TransformCounts own;
+  transforms_->invert(instance, own);
+  ++counts.transforms;
+  counts.transforms_in_double += transforms_->in_double(instance);
+  counts.inversions += own.inversions;
+  counts.full_inversions += own.full_inversions;
+  counts.inversions_in_double += own.inversions_in_double;
 }
 
-IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray) {
+void RayWalk::test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray,
+                   IntersectionCounts& counts) {
   std::uint8_t mask = 0;
   float nearest[accel::kMaxWidth], entry[accel::kMaxWidth];
   std::fill(std::begin(nearest), std::end(nearest), kInfinity);
-  IntersectionCounts tests;
-  accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, tests);
+  const std::uint64_t transforms = counts.transforms, in_double = counts.transforms_in_double;
+  accel::test_strip(accel, key, ~0u, ray, {&mask, nearest, entry}, counts);
   if (accel::NearestRay* const several = accel::nearest_of(ray.records[*ray.slots])) several->visited();
-  tests.transforms = tests.transforms_in_double = 0;  // the kernel's own, for every strip
-  if (key.instance != instance_) enter(key.instance, *ray.slots, tests);
-  tests.decoded = accel::blocks_to_decode(accel, key.ref);
-  if (!key.ref.is_inner() || mask == 0) return tests;
+  counts.transforms = transforms;  // without the kernel's own, for every strip
+  counts.transforms_in_double = in_double;
+  if (key.instance != instance_) enter(key.instance, *ray.slots, counts);
+  counts.decoded += accel::blocks_to_decode(accel, key.ref);
+  if (!key.ref.is_inner() || mask == 0) return;
   std::uint64_t bytes = 0;
   const std::size_t waiting = stack_.size();
   const auto met = static_cast<std::ptrdiff_t>(exits_.size());
@@ -94,14 +100,13 @@ IntersectionCounts RayWalk::test(const accel::Accel& accel, accel::NodeKey key, 
     bytes += entry_bytes(child.key);
   });
   std::reverse(exits_.begin() + met, exits_.end());
-  if (stack_.size() == waiting) return tests;
+  if (stack_.size() == waiting) return;
   // The first child of a strip that was tested before this one goes onto the stack after all.
   if (next_in_hand_) bytes += entry_bytes(stack_[waiting - 1].key);
   bytes -= entry_bytes(stack_.back().key);
   next_in_hand_ = true;
   bytes_.held += bytes;
   bytes_.pushed += bytes;
-  return tests;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -31,9 +31,15 @@ class RayWalk {
   /// oldest `beyond` entries of the stack are not at hand: where nothing else is left, there is nothing either. A round
   /// begins where all strips that next() has given have been `tested`.
   std::optional<accel::NodeKey> next(const RayRecord& record, std::size_t beyond = 0, bool tested = true);
-  /// Tests the ray, the one member of `ray`, against that strip. Returns the tests that the hardware has to make.
-  /// Several strips that next() has given may be tested one after another.
-  IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray);
+  /// Tests the ray, the one member of `ray`, against that strip. Adds the tests that the hardware has to make to
+  /// `counts`. Several strips that next() has given may be tested one after another.
+  void test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray, IntersectionCounts& counts);
+  /// As above, alone.
+  IntersectionCounts test(const accel::Accel& accel, accel::NodeKey key, const accel::RayMembers& ray) {
+    IntersectionCounts counts;
+    test(accel, key, ray, counts);
+    return counts;
+  }
 
   /// In the order in which they were met; those of one node in the order in which they would be visited.
   const std::vector<NextNode>& exits() const { return exits_; }
@@ -53,7 +59,7 @@ class RayWalk {
 
  private:
   NextNode pop();
-  void enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& tests);
+  void enter(std::uint32_t instance, std::uint32_t slot, IntersectionCounts& counts);
 
   TransformAccount* transforms_;
   ChildOrder order_;

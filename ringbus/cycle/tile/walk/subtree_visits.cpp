@@ -8,14 +8,14 @@ namespace carousel::ringbus::cycle {
 void SubtreeVisits::prepare(std::size_t context, WalkSteps& ways) {
   Visit& visit = visits_[context];
   std::swap(visit.ways, ways);
-  left_[context] = static_cast<std::uint32_t>(visit.ways.ends.size());
+  left_[context] = static_cast<std::uint32_t>(visit.ways.ends().size());
   if (timed_) visit.times.assign(left_[context], {});
   visit.inverted.clear();
 }
 
 void SubtreeVisits::begin(std::size_t context, std::uint32_t reads, Cycle now, bool loaded) {
   visits_[context].loaded = loaded;
-  const std::vector<std::uint32_t>& ends = visits_[context].ways.ends;
+  const std::vector<std::uint32_t>& ends = visits_[context].ways.ends();
   std::uint32_t first = 0, place = 0;
   std::uint64_t records = reads - ends.size() + 1;
   for (const std::uint32_t end : ends) {
@@ -54,10 +54,10 @@ void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
     return;
   }
   if (visit.loaded) return test(index, now);
-  const WalkStep& step = visit.ways.steps[ray.step];
-  const bool reads = step.tests.tests[UnitKind::kTransform] > 0 || memory_.reads_record(step.key);
-  const ShapeNeed need(memory_.has_treelets() ? memory_.treelet(step.key.ref) : memory_.strip(step.key),
-                       reads ? memory_.transform(step.key.instance) : ShapeSpan{}, memory_.gaussians(step.key));
+  const WalkStep& step = visit.ways[ray.step];
+  const bool reads = visit.ways.transforms(step) || memory_.reads_record(step.key);
+  const ShapeNeed need{memory_.has_treelets() ? memory_.treelet(step.key.ref) : memory_.strip(step.key),
+                       reads ? memory_.transform(step.key.instance) : ShapeSpan{}, memory_.gaussians(step.key)};
   ray.phase = Ray::Phase::kWaits;
   if (shapes_.take(first_user_ + index, need, now)) test(index, now);
 }
@@ -65,22 +65,26 @@ void SubtreeVisits::advance(std::uint32_t index, Cycle now) {
 void SubtreeVisits::test(std::uint32_t index, Cycle now) {
   Ray& ray = rays_[index];
   Visit& visit = visits_[ray.context];
-  const WalkStep& step = visit.ways.steps[ray.step++];
-  Cycle at = now;
-  RayTests tests = step.tests;
-  if (const std::uint8_t passes = std::exchange(tests.inversion, 0); passes > 0) [[unlikely]] {
-    // The first ray that needs a matrix inverted has it done for all of the visit.
-    const auto done = std::find_if(visit.inverted.begin(), visit.inverted.end(),
-                                   [&](const Inverted& one) { return one.instance == step.key.instance; });
-    at = done != visit.inverted.end()
-             ? std::max(now, done->at)
-             : visit.inverted.emplace_back(Inverted{step.key.instance, tester_.invert(now, passes)}).at;
-  }
+  const WalkStep& step = visit.ways[ray.step++];
   ray.phase = Ray::Phase::kInTest;
   ++in_test_;
-  const Cycle end = tester_.ray(at, tests);
+  const Cycle end = step.has_one_kind() ? tester_.ray(now, step.kind(), step.passes()) : test_several(visit, step, now);
   if (timed_) visit.times[ray.place].in_test += end - now;
   events_.add(now, end, index);
+}
+
+/// Returns the end of tests of several kinds.
+Cycle SubtreeVisits::test_several(Visit& visit, const WalkStep& step, Cycle now) {
+  RayTests tests = visit.ways.tests(step);
+  const std::uint8_t passes = std::exchange(tests.inversion, 0);
+  if (passes == 0) return tester_.ray(now, tests);
+  // The first ray that needs a matrix inverted has it done for all of the visit.
+  const auto done = std::find_if(visit.inverted.begin(), visit.inverted.end(),
+                                 [&](const Inverted& one) { return one.instance == step.key.instance; });
+  const Cycle at = done != visit.inverted.end()
+                       ? std::max(now, done->at)
+                       : visit.inverted.emplace_back(Inverted{step.key.instance, tester_.invert(now, passes)}).at;
+  return tester_.ray(at, tests);
 }
 
 void SubtreeVisits::run(Cycle now) {

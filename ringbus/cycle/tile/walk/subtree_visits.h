@@ -85,6 +85,7 @@ class SubtreeVisits {
   void advance(std::uint32_t index, Cycle now);
   bool has_next(const Ray& ray) const { return ray.step != ray.end; }
   void test(std::uint32_t index, Cycle now);
+  Cycle test_several(Visit& visit, const WalkStep& step, Cycle now);
 
   const ShapeMemory& memory_;
   ShapeBuffer& shapes_;

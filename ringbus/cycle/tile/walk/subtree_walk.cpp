@@ -13,8 +13,7 @@ accel::RayMembers one_of(const accel::RayMembers& members, std::size_t i) {
 }  // namespace
 
 void SubtreeWalk::begin() {
-  ways_.steps.clear();
-  ways_.ends.clear();
+  ways_.clear();
   inverted_.clear();
 }
 
@@ -38,15 +37,23 @@ void SubtreeWalk::trace_treelets(std::span<const accel::NodeKey> from, const acc
 
 void SubtreeWalk::walk_ray(const accel::RayMembers& ray, IntersectionCounts& counts) {
   const RayRecord& record = ray.records[*ray.slots];
+  RayTests before = ray_tests(counts);
   while (const std::optional<accel::NodeKey> key = walk_.next(record)) {
-    IntersectionCounts tests = walk_.test(accel_, *key, ray);
-    ways_.steps.push_back({*key, ray_tests(tests)});
+    const std::uint64_t inversions = counts.inversions, full = counts.full_inversions,
+                        in_double = counts.inversions_in_double;
+    walk_.test(accel_, *key, ray, counts);
+    RayTests after = ray_tests(counts);
+    ways_.add(*key, before, after);
     // One inversion serves all rays of a visit.
-    if (tests.inversions > 0 && !inverted_.insert(key->instance).second)
-      tests.inversions = tests.full_inversions = tests.inversions_in_double = 0;
-    counts += tests;
+    if (counts.inversions != inversions && !inverted_.insert(key->instance).second) {
+      counts.inversions = inversions;
+      counts.full_inversions = full;
+      counts.inversions_in_double = in_double;
+      after = ray_tests(counts);
+    }
+    before = after;
   }
-  ways_.ends.push_back(static_cast<std::uint32_t>(ways_.steps.size()));
+  ways_.end_ray();
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -14,6 +14,11 @@
 namespace carousel::ringbus::cycle {
 namespace {
 
+struct Strip {
+  accel::NodeKey key;
+  RayTests tests;
+};
+
 /// Visits of one resource, whose cache answers every request after 100 cycles; half of its latency is 17.
 struct VisitBench {
   explicit VisitBench(TestScene& scene) : memory(scene.accel({}), {}) {
@@ -30,11 +35,11 @@ struct VisitBench {
     visits = std::make_unique<SubtreeVisits>(memory, *buffer, *tester, 1, 1, false);
   }
   /// The end of a visit that begins at `at`, of rays with these ways.
-  Cycle visit(Cycle at, const std::vector<std::vector<WalkStep>>& rays) {
+  Cycle visit(Cycle at, const std::vector<std::vector<Strip>>& rays) {
     WalkSteps ways;
-    for (const std::vector<WalkStep>& ray : rays) {
-      ways.steps.insert(ways.steps.end(), ray.begin(), ray.end());
-      ways.ends.push_back(static_cast<std::uint32_t>(ways.steps.size()));
+    for (const std::vector<Strip>& ray : rays) {
+      for (const Strip& strip : ray) ways.add(strip.key, {}, strip.tests);
+      ways.end_ray();
     }
     visits->prepare(0, ways);
     visits->begin(0, static_cast<std::uint32_t>(rays.size()), at, false);
@@ -63,7 +68,7 @@ struct VisitBench {
 
 TEST(PointerWalk, IsRightToTheCycle) {
   TestScene scene(builtin_scene(BuiltinScene::kTerrain, 300, 0), 10, 0);
-  const WalkStep a{{kNoInstance, accel::NodeRef::inner(0)}, ray_tests({.box = 8})},
+  const Strip a{{kNoInstance, accel::NodeRef::inner(0)}, ray_tests({.box = 8})},
       b{{kNoInstance, accel::NodeRef::inner(1)}, ray_tests({.box = 8})},
       c{{kNoInstance, accel::NodeRef::leaf(0, 4)}, ray_tests({.triangle = 4})};
   VisitBench one(scene);
@@ -79,6 +84,19 @@ TEST(PointerWalk, IsRightToTheCycle) {
   // The second ray asks for c at 174 + 1, and a ray that is done asks for nothing.
   EXPECT_EQ(apart.visit(50, {{a, b}, {a, c}, {}}), 50u + 117 + 8 + 117 + 11);
   EXPECT_EQ(apart.fetches, 3u);
+}
+
+TEST(PointerWalk, TakesUnitsOfSeveralKinds) {
+  TestScene scene(builtin_scene(BuiltinScene::kTerrain, 300, 0), 10, 0);
+  const Strip boxes{{kNoInstance, accel::NodeRef::inner(0)}, ray_tests({.box = 8})},
+      planes{{kNoInstance, accel::NodeRef::inner(1)}, ray_tests({.box = 8, .plane = 4})},
+      nothing{{kNoInstance, accel::NodeRef::leaf(0, 4)}, {}};
+  VisitBench bench(scene);
+  // Planes are tested behind boxes, by units of 22 cycles.
+  EXPECT_EQ(bench.visit(50, {{boxes, planes, nothing}}), 50u + 117 + 7 + 117 + 7 + 22 + 117);
+  EXPECT_EQ(bench.tester->bank(UnitKind::kBox).tests(), 16u);
+  EXPECT_EQ(bench.tester->bank(UnitKind::kPlane).tests(), 4u);
+  EXPECT_EQ(bench.tester->bank(UnitKind::kTriangle).tests(), 0u);
 }
 
 /// For each ray of the scene the strips it reads, and the depth of the deepest.
