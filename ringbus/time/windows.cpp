@@ -5,8 +5,10 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <span>
 #include <stdexcept>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "ringbus/rays/ray_id.h"
@@ -233,29 +235,35 @@ class WindowRun {
 
   /// Takes in the announcements, between windows. Returns the earliest time at which an agent of the thread has to run.
   Cycle look(std::size_t thread, Schedule& schedule) {
-    const std::vector<Agent*>& agents = parts_[thread];
-    std::vector<Cycle>& wake = schedule.wake;
+    // Spans, since a call of an agent may change a vector for all that the compiler knows.
+    const std::span<Agent* const> agents = parts_[thread];
+    const std::span<Cycle> wake = schedule.wake;
     for (std::size_t from = 0; from < parts_.size(); ++from) {
-      take_announcements(wakeups_.row(thread, from), wake, [](std::size_t, Cycle) {});
-      take_announcements(wakeups_.row_beside(thread, from), wake,
-                         [&](std::size_t i, Cycle at) { agents[i]->notify(at); });
+      take_beside(wakeups_.row_beside(thread, from), wake, agents);
+      if (from + 1 < parts_.size()) take_announcements(wakeups_.row(thread, from), wake);
     }
-    poll(agents, schedule);
+    // The last row is taken in on the way through all agents.
+    const std::span<Cycle> row = wakeups_.row(thread, parts_.size() - 1);
+    const std::span<const std::uint8_t> polled = schedule.polled;
+    const bool one_clock = schedule.clocks.empty();
     Cycle first = kNever;
-    if (schedule.clocks.empty())
-      for (const Cycle at : wake) first = std::min(first, at);
-    else
-      for (std::size_t i = 0; i < wake.size(); ++i) first = std::min(first, schedule.cycle_of(i, wake[i]));
+    for (std::size_t i = 0; i < wake.size(); ++i) {
+      Cycle at = std::min(wake[i], std::exchange(row[i], kNever));
+      if (polled[i]) at = std::min(at, agents[i]->unannounced());
+      wake[i] = at;
+      first = std::min(first, one_clock ? at : schedule.cycle_of(i, at));
+    }
     return first;
   }
+  static void take_announcements(std::span<Cycle> row, std::span<Cycle> wake) {
+    for (std::size_t i = 0; i < row.size(); ++i) wake[i] = std::min(wake[i], std::exchange(row[i], kNever));
+  }
   /// `row` may be empty: nothing is announced there.
-  template <class Tell>
-  static void take_announcements(std::vector<Cycle>& row, std::vector<Cycle>& wake, const Tell& tell) {
+  static void take_beside(std::span<Cycle> row, std::span<Cycle> wake, std::span<Agent* const> agents) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       if (row[i] == kNever) continue;
-      tell(i, row[i]);
-      wake[i] = std::min(wake[i], row[i]);
-      row[i] = kNever;
+      agents[i]->notify(row[i]);
+      wake[i] = std::min(wake[i], std::exchange(row[i], kNever));
     }
   }
 
@@ -280,17 +288,18 @@ class WindowRun {
   }
 
   /// Returns how many agents had something to do.
-  std::uint64_t run_window(const std::vector<Agent*>& agents, Schedule& schedule, Cycle begin, Cycle end) {
+  std::uint64_t run_window(std::span<Agent* const> agents, Schedule& schedule, Cycle begin, Cycle end) {
     std::uint64_t runs = 0;
     const bool one_clock = schedule.clocks.empty();
+    const std::span<Cycle> wake = schedule.wake;
     try {
       for (std::size_t i = 0; i < agents.size(); ++i) {
         const Cycle own_end = one_clock ? end : schedule.edge_at(i, end);
-        if (schedule.wake[i] >= own_end) continue;
+        if (wake[i] >= own_end) continue;
         if (kChecked && agents[i]->next() < schedule.edge_at(i, begin)) throw_not_woken();
         ++runs;
         agents[i]->run(own_end);
-        schedule.wake[i] = agents[i]->next_after_run();
+        wake[i] = agents[i]->next_after_run();
         schedule.polled[i] = agents[i]->polled();
       }
     } catch (...) {
