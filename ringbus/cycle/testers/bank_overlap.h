@@ -30,25 +30,14 @@ class BankOverlap {
       if (bank.works_before(now)) lanes_.push_back({&bank, 0, bank.span(0)});
     });
     Cycle at = seen_;
-    while (!lanes_.empty()) {
+    while (lanes_.size() > 1) {
       Lane& first = *std::min_element(lanes_.begin(), lanes_.end(),
                                       [](const Lane& a, const Lane& b) { return a.span.begin < b.span.begin; });
-      const UnitBank::Span span = first.span;
-      if (span.begin > at) wait(at, span.begin);
-      at = std::max(at, span.begin);
-      if (const Cycle end = std::min(span.end, now); end > at) {
-        so_far_.any += end - at;
-        at = end;
-      }
-      answered_ = std::max(answered_, span.end - first.bank->interval() + first.bank->latency() + after_);
-      std::erase_if(chains_, [&](const Chain& chain) {
-        if (chain.from >= span.end) return false;
-        answered_ = std::max(answered_, chain.until);
-        return true;
-      });
-      if (!first.bank->has_span(++first.index) || (first.span = first.bank->span(first.index)).begin >= now)
-        lanes_.erase(lanes_.begin() + (&first - lanes_.data()));
+      if (!take_span(first, at, now)) lanes_.erase(lanes_.begin() + (&first - lanes_.data()));
     }
+    if (!lanes_.empty())  // mostly there is no more than one
+      while (take_span(lanes_.front(), at, now)) {
+      }
     if (now > at) wait(at, now);
     seen_ = now;
   }
@@ -71,6 +60,26 @@ class BankOverlap {
     Cycle from, until;
   };
 
+  /// Takes the earliest of all spans. Returns whether its bank has another one that begins before `now`.
+  bool take_span(Lane& lane, Cycle& at, Cycle now) {
+    const UnitBank::Span span = lane.span;
+    if (span.begin > at) wait(at, span.begin);
+    at = std::max(at, span.begin);
+    if (const Cycle end = std::min(span.end, now); end > at) {
+      so_far_.any += end - at;
+      at = end;
+    }
+    answered_ = std::max(answered_, span.end - lane.bank->interval() + lane.bank->latency() + after_);
+    if (!chains_.empty())
+      std::erase_if(chains_, [&](const Chain& chain) {
+        if (chain.from >= span.end) return false;
+        answered_ = std::max(answered_, chain.until);
+        return true;
+      });
+    if (!lane.bank->has_span(++lane.index)) return false;
+    lane.span = lane.bank->span(lane.index);
+    return lane.span.begin < now;
+  }
   /// No bank is busy.
   void wait(Cycle begin, Cycle end) {
     if (answered_ > begin) so_far_.latency += std::min(answered_, end) - begin;
