@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/numeric/grow.h"
+
 namespace carousel::ringbus {
 
 ResourceStatistics& ResourceStatistics::operator+=(const ResourceStatistics& o) {
@@ -63,7 +65,7 @@ void StatisticsSink::record(const Event& event) {
 
 void StatisticsSink::add(const NodeCountsAtDepth& work) {
   std::vector<NodeCounts>& nodes = statistics_.nodes;
-  if (nodes.size() <= work.depth) nodes.resize(work.depth + std::size_t{1});
+  grow_to(nodes, work.depth + std::size_t{1});
   nodes[work.depth] += work.counts;
 }
 

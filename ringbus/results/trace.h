@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/numeric/grow.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
@@ -45,7 +46,7 @@ class Trace {
 
   void note(Cycle at, StepKind kind, std::uint32_t packet, std::size_t rays) {
     const std::size_t epoch = at / kEpoch;
-    if (epochs_.size() <= epoch) epochs_.resize(epoch + 1);
+    grow_to(epochs_, epoch + 1);
     std::uint64_t x = epochs_[epoch] ^ (at << 8 | static_cast<std::uint64_t>(kind));
     x = (x ^ x >> 32) * 0xd6e8feb86659fd93ull + (std::uint64_t{packet} << 32 | static_cast<std::uint32_t>(rays));
     epochs_[epoch] = (x ^ x >> 32) * 0xd6e8feb86659fd93ull;

@@ -168,7 +168,7 @@ class Channel : public AnyChannel {
   };
 
   /// Out of line, as few channels have two clocks.
-  [[gnu::noinline]] static Cycle entered(const ClockRatio& clock, Cycle at) { return clock.enter(at); }
+  [[gnu::cold, gnu::noinline]] static Cycle entered(const ClockRatio& clock, Cycle at) { return clock.enter(at); }
   template <class Thing>
   [[gnu::always_inline]] void put(Cycle arrival, Thing&& thing) {
     if (there_ != nullptr) [[unlikely]]

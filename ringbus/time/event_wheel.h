@@ -7,6 +7,7 @@
 #include <queue>
 #include <vector>
 
+#include "core/numeric/grow.h"
 #include "ringbus/time/clock.h"
 
 namespace carousel::ringbus {
@@ -20,11 +21,11 @@ class EventWheel {
   /// Adds an event at `at`. `now` is not later than `at`, and not earlier than the last event taken.
   void add(Cycle now, Cycle at, std::uint32_t thing) {
     if (next_ == kNever) base_ = now;
-    if (thing >= link_.size()) link_.resize(thing + 1);
+    grow_to(link_, thing + std::size_t{1});
     if (at - base_ < kSlots)
       append(at, thing);
     else
-      far_.push({at, next_turn_++, thing});
+      add_far(at, thing);
     if (at < next_) next_ = at;
   }
   /// The time of the first event; kNever when there is none.
@@ -64,9 +65,13 @@ class EventWheel {
     link_[thing] = kNone;
     filled_ |= std::uint64_t{1} << at % kSlots;
   }
+  [[gnu::noinline]] void add_far(Cycle at, std::uint32_t thing) { far_.push({at, next_turn_++, thing}); }
   /// No event is earlier. Brings in those that are no longer far, before any that are added from now on.
   void turn_to(Cycle now) {
     base_ = now;
+    if (!far_.empty()) bring_in();
+  }
+  [[gnu::noinline]] void bring_in() {
     for (; !far_.empty() && far_.top().at - base_ < kSlots; far_.pop()) append(far_.top().at, far_.top().thing);
   }
   Cycle find() const {

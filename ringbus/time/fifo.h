@@ -24,7 +24,7 @@ class Fifo {
   }
 
  private:
-  void grow() {
+  [[gnu::cold, gnu::noinline]] void grow() {
     std::vector<T> larger(2 * items_.size());
     for (std::size_t i = 0; i < size(); ++i) larger[i] = std::move(items_[(head_ + i) & (items_.size() - 1)]);
     tail_ = size();

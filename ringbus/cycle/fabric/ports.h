@@ -32,7 +32,7 @@ struct FarClock {
 
   /// When the link takes over the credit of a packet that is taken `now`. Out of line, as few links have a clock of
   /// their own.
-  [[gnu::noinline]] Cycle leaves(Cycle now) const { return to_link.enter(now + credit_cycles); }
+  [[gnu::cold, gnu::noinline]] Cycle leaves(Cycle now) const { return to_link.enter(now + credit_cycles); }
 };
 
 /// The sender of a link goes by another clock than the link, which moves packets by its own: what the sender hands over
@@ -193,7 +193,7 @@ class OutPortOf {
     return faults_ ? std::min(credit, faults_->next()) : credit;
   }
   /// Where some are lost.
-  void take_uncertain_credits(Cycle now) {
+  [[gnu::cold, gnu::noinline]] void take_uncertain_credits(Cycle now) {
     for (Cycle at; (at = wire_->packets.next_return()) <= now;) {
       wire_->packets.take_return();
       recover_credits(at);
@@ -228,7 +228,7 @@ class OutPortOf {
   }
   using Flight = LinkFaultTimer::Delivery;
   /// Out of line, as few links have a clock of their own. The arrival is by the clock of the link.
-  [[gnu::noinline]] Flight crossing_flight(Cycle now, Cycle cycles, bool cut_through) {
+  [[gnu::cold, gnu::noinline]] Flight crossing_flight(Cycle now, Cycle cycles, bool cut_through) {
     NearClock& near = *near_;
     const Cycle edge = std::max(near.to_link.enter(now + near.node_cycles), near.link_free);
     near.link_free = edge + cycles;
@@ -237,7 +237,7 @@ class OutPortOf {
     return {edge + latency_ + (cut_through ? 0 : cycles - 1), next, 0};
   }
   /// Out of line, as few links have faults.
-  [[gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {
+  [[gnu::cold, gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {
     Flight flight = faults_->send(now, cycles);
     // In order even where a head overtakes the tail before it.
     last_arrival_ = std::max(last_arrival_, flight.arrival + (cut_through ? 0 : cycles - 1));

@@ -16,23 +16,24 @@ ShapeBuffer::ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, con
       buckets_(64, kNone),
       shift_(64 - 6) {}
 
-ShapeBuffer::UserState& ShapeBuffer::state_of(User user) {
-  if (user >= users_.size()) {
-    users_.resize(user + 1);
-    requests_.resize(user + 1);
-  }
-  return users_[user];
-}
-
-void ShapeBuffer::need_far(User user, std::size_t spans) {
-  if (spans > kNear && user >= far_.size()) [[unlikely]]
-    far_.resize(user + 1);
-}
-
 // ---- users
 
 bool ShapeBuffer::take(User user, const ShapeNeed& need, Cycle now) {
   UserState& state = state_of(user);
+  if (need.size() == 1 && need.shapes.bytes > 0) [[likely]]
+    if (const std::uint32_t index = find(need.shapes); index != kNone) {  // as grant() does, in less time
+      const Entry& entry = entries_[index];
+      state.state = State::kHolds;
+      state.missing = 0;
+      state.complete_at = now;
+      state.spans = 1;
+      state.near[0].entry = index;
+      hold(index);
+      count_read(need.shapes.row, false);
+      ++(entry.here ? counts_.hits : counts_.merged);
+      if (!entry.here) wait_for(index, user, 0);
+      return state.missing == 0;
+    }
   if (grant(user, need, true, now)) return state.missing == 0;
   ++counts_.room_waits;
   state.state = State::kWaits;
@@ -60,8 +61,10 @@ void ShapeBuffer::hand_over(User from, User to) {
   receiver.missing = 0;
   receiver.near = giver.near;
   receiver.spans = giver.spans;
-  need_far(to, giver.spans);
-  if (giver.spans > kNear) far_[to] = far_[from];
+  if (giver.spans > kNear) {
+    grow_to(far_, to + std::size_t{1});
+    far_[to] = far_[from];
+  }
   giver.state = State::kNothing;
 }
 
@@ -150,7 +153,7 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
   state.missing = 0;
   state.complete_at = now;
   state.spans = static_cast<std::uint8_t>(spans);
-  need_far(user, spans);
+  if (spans > kNear) grow_to(far_, user + std::size_t{1});
   for (const std::uint32_t entry : std::span(found).first(spans))
     if (entry != kNone) hold(entry);
   for (std::size_t which = 0; which < spans; ++which) {
@@ -170,13 +173,6 @@ bool ShapeBuffer::grant(User user, const ShapeNeed& need, bool test, Cycle now) 
     if (!entries_[entry].here) wait_for(entry, user, which);
   }
   return true;
-}
-
-void ShapeBuffer::count_read(std::uint16_t row, bool missed) {
-  if (row == accel::StructureDepths::kNoRow) return;
-  if (row >= reads_.size()) reads_.resize(row + std::size_t{1});
-  ++reads_[row].needed;
-  reads_[row].misses += missed;
 }
 
 /// Gives room to those who wait for it: tests first, then the issue queue.

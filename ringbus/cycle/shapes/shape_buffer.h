@@ -9,6 +9,7 @@
 
 #include "core/config/fields/memory.h"
 #include "core/config/fields/topology.h"
+#include "core/numeric/grow.h"
 #include "core/statistics/shape_buffer_counts.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/shapes/shape_port.h"
@@ -132,8 +133,12 @@ class ShapeBuffer {
   Hold& hold_of(User user, std::size_t which) {
     return which < kNear ? users_[user].near[which] : far_[user][which - kNear];
   }
-  UserState& state_of(User user);
-  void need_far(User user, std::size_t spans);
+  UserState& state_of(User user) {
+    grow_to(users_, user + std::size_t{1});
+    grow_to(requests_, user + std::size_t{1});
+    return users_[user];
+  }
+  bool take_one(User user, const ShapeSpan& span, std::uint32_t index, Cycle now);
   bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
   std::uint32_t find(const ShapeSpan& span) const;
   void remove(std::uint32_t entry);
@@ -146,7 +151,12 @@ class ShapeBuffer {
   void stop_waiting(std::uint32_t entry, std::uint32_t wait);
   void drop(UserState& state, User user);
   void serve(Cycle now);
-  void count_read(std::uint16_t row, bool missed);
+  void count_read(std::uint16_t row, bool missed) {
+    if (row == accel::StructureDepths::kNoRow) return;
+    grow_to(reads_, row + std::size_t{1});
+    ++reads_[row].needed;
+    reads_[row].misses += missed;
+  }
   void grow_buckets();
   void take_pushed(Cycle now);
   std::size_t bucket(const ShapeSpan& span) const {

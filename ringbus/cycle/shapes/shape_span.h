@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -26,25 +25,20 @@ struct ShapeSpan {
 /// The data that a test needs at one time: shapes, the stored data of their instance's transform, and the records of
 /// Gaussians around which triangles among the shapes stand. A span without bytes is not needed. The records are those
 /// of ShapeMemory, and differ from one another.
-class ShapeNeed {
- public:
+struct ShapeNeed {
   static constexpr std::size_t kMost = 2 + accel::kMaxLeafTriangles;
 
-  ShapeNeed() = default;
-  ShapeNeed(const ShapeSpan& shapes, const ShapeSpan& transform, std::span<const ShapeSpan> gaussians = {})
-      : own_{shapes, transform}, gaussians_(gaussians) {}
+  ShapeSpan shapes, transform;
+  std::span<const ShapeSpan> gaussians{};
 
-  std::size_t size() const { return own_.size() + gaussians_.size(); }
-  const ShapeSpan& operator[](std::size_t i) const { return i < own_.size() ? own_[i] : gaussians_[i - own_.size()]; }
+  /// Without the last spans if they are not needed.
+  std::size_t size() const { return transform.bytes == 0 && gaussians.empty() ? 1 : 2 + gaussians.size(); }
+  const ShapeSpan& operator[](std::size_t i) const { return i == 0 ? shapes : i == 1 ? transform : gaussians[i - 2]; }
   std::uint32_t bytes() const {
-    std::uint32_t sum = own_[0].bytes + own_[1].bytes;
-    for (const ShapeSpan& span : gaussians_) sum += span.bytes;
+    std::uint32_t sum = shapes.bytes + transform.bytes;
+    for (const ShapeSpan& span : gaussians) sum += span.bytes;
     return sum;
   }
-
- private:
-  std::array<ShapeSpan, 2> own_;
-  std::span<const ShapeSpan> gaussians_;
 };
 
 }  // namespace carousel::ringbus::cycle

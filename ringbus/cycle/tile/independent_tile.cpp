@@ -106,8 +106,8 @@ void IndependentTile::keep_running(std::uint32_t slot, Cycle now) {
   if (follows(slot)) [[unlikely]]
     waits_since_ = now;
   const bool enters = thread.walk.enters(next->instance);
-  const ShapeNeed need(memory_.strip(*next), enters ? memory_.transform(next->instance) : ShapeSpan{},
-                       memory_.gaussians(*next));
+  const ShapeNeed need{memory_.strip(*next), enters ? memory_.transform(next->instance) : ShapeSpan{},
+                       memory_.gaussians(*next)};
   if (shapes_.take(slot, need, now)) test(slot, now);
 }
 

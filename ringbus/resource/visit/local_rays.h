@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/numeric/grow.h"
 #include "ringbus/packets/packet.h"
 #include "ringbus/rays/ray_store.h"
 
@@ -20,7 +21,7 @@ struct LocalRays {
 
   void gather(const Packet& packet, const RayStore& store) {
     const std::size_t n = packet.members.size();
-    if (found_.size() < 2 * n) found_.resize(2 * n);
+    grow_to(found_, 2 * n);
     std::uint32_t* const slot_of = found_.data();
     std::uint32_t* const member_of = slot_of + n;
     std::size_t count = 0;

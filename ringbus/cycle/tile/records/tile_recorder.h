@@ -94,13 +94,15 @@ class TileRecorder {
                         std::span<const WalkTime> walks);
   bool has_slices() const { return recording_.slices != nullptr; }
   bool has_ray() const { return recording_.ray != nullptr; }
-  void note_dispatch(Cycle begin, Cycle end, std::size_t ids, SliceKind kind, PacketId packet, bool has_trip);
-  void note_issued(PacketId id, Cycle now);
-  void note_context(PacketId id, std::size_t context, Cycle since, Cycle begun, Cycle end);
-  void note_admitted(std::span<const RayId> rays, Cycle now);
-  void note_tested(const Packet& packet, PacketId id, Cycle at, const TestOutcome& outcome, const Resource& resource);
-  void note_retired(const Packet& packet, PacketId id, Cycle now);
-  void note_completed(const HitBatch& rays, Cycle now);
+  [[gnu::cold]] void note_dispatch(Cycle begin, Cycle end, std::size_t ids, SliceKind kind, PacketId packet,
+                                   bool has_trip);
+  [[gnu::cold]] void note_issued(PacketId id, Cycle now);
+  [[gnu::cold]] void note_context(PacketId id, std::size_t context, Cycle since, Cycle begun, Cycle end);
+  [[gnu::cold]] void note_admitted(std::span<const RayId> rays, Cycle now);
+  [[gnu::cold]] void note_tested(const Packet& packet, PacketId id, Cycle at, const TestOutcome& outcome,
+                                 const Resource& resource);
+  [[gnu::cold]] void note_retired(const Packet& packet, PacketId id, Cycle now);
+  [[gnu::cold]] void note_completed(const HitBatch& rays, Cycle now);
   Hit hit_of(RayId ray) const;
 
   Machine& machine_;

@@ -136,8 +136,8 @@ WarpTile::Turn WarpTile::turn(std::uint32_t slot, Cycle now) {
 }
 
 void WarpTile::ask(std::uint32_t slot, accel::NodeKey strip, bool needs_transform) {
-  const ShapeNeed need(memory_.strip(strip), needs_transform ? memory_.transform(strip.instance) : ShapeSpan{},
-                       memory_.gaussians(strip));
+  const ShapeNeed need{memory_.strip(strip), needs_transform ? memory_.transform(strip.instance) : ShapeSpan{},
+                       memory_.gaussians(strip)};
   ++rays_[slot].in_test;
   tests_.ask(slot, strip, need);
 }
