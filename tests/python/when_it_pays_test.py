@@ -1,6 +1,9 @@
 """bench/studies/when_it_pays with a program that only seems to simulate: what is killed goes on, shards share the runs and
-end in time, and machines that differ in a hit are told."""
+end in time, machines are tuned step by step, and those that differ in a hit are told. And what the map says of a place."""
+import importlib.machinery
+import importlib.util
 import json
+import math
 import os
 import pathlib
 import re
@@ -12,6 +15,14 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 STUDY = ROOT / "bench/studies/when_it_pays"
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(STUDY.parent))
+import map_axes
+
+loader = importlib.machinery.SourceFileLoader("when_it_pays", str(STUDY))
+when_it_pays = importlib.util.module_from_spec(importlib.util.spec_from_loader("when_it_pays", loader))
+sys.modules["when_it_pays"] = when_it_pays
+loader.exec_module(when_it_pays)
 
 # Notes each call. Cycles follow from the machine, hits from scene and rays. KILL_AT kills the study in a call, and LIE_AT
 # gives a call other hits. Thousands of calls: it starts without what Python searches, and imports little.
@@ -19,6 +30,14 @@ PROGRAM = f"#!{sys.executable} -IS\n" + '''
 import json, os, signal, sys, zlib
 if sys.argv[1:] == ["--version"]:
     print("carousel 1\\ncommit", os.environ.get("COMMIT", "abc12345"))
+    sys.exit(0)
+if sys.argv[1] == "check":
+    keys = dict(word.split("=", 1) for before, word in zip(sys.argv, sys.argv[1:]) if before == "--set")
+    print(json.dumps({
+        "memory": {"parts": {"structure": 50 * int(keys.get("scene.triangles", 0))}},
+        "resolved": {"topology": {"resources": 20}, "memory": {
+            "shape_buffer_kib": 32, "l1_kib": 4, "l2_kib": int(keys.get("memory.l2_kib", 512)), "shared_by": 8,
+            "dram": {"channels": int(keys.get("memory.dram.channels", 1))}}}}))
     sys.exit(0)
 calls = os.path.dirname(os.path.abspath(__file__)) + "/calls"
 with open(calls, "a+") as file:
@@ -159,6 +178,92 @@ class WhenItPays(unittest.TestCase):
             self.assertEqual([int(row[0]) for row in rows], list(range(20)))
             places = [int(row[4]) for row in rows]
             self.assertEqual(places == sorted(places), kind == "shadow")
+
+
+class Kept:
+    """Runs whose cycles follow from the slots: those of the settings are the fewer, the nearer slots are to `best`."""
+
+    def __init__(self, best):
+        self.best, self.kept = best, set()
+
+    def do(self, runs):
+        self.kept |= {json.dumps(run) for run in runs}
+        return True
+
+    def missing(self, runs):
+        return [run for run in runs if json.dumps(run) not in self.kept]
+
+    def read(self, run):
+        assert json.dumps(run) in self.kept, "only what was asked for is read"
+        slots = when_it_pays.slots(run["keys"])
+        list_of = run.get("list", {"keys": run["keys"]})
+        best = self.best("scene.builtin=spheres" in list_of["keys"], "list" in run, run["config"])
+        return {"rays": 1, "cycles": 1000 * (1 + abs(math.log(slots / best))), "nj_per_ray": slots, "tree_bytes": 1}
+
+
+class Tuning(unittest.TestCase):
+    GRID = when_it_pays.Grid((10000,), (1,), tuple((scene, rays) for scene in ("terrain", "spheres") for rays in ("bounces", "shadow")),
+                             (1, 2), (16, 8), (16, 8))
+
+    def tuned(self, best):
+        runs = Kept(best)
+        self.assertIsNone(when_it_pays.tune(runs, self.GRID)[1])
+        tuning, machines = when_it_pays.tune(runs, self.GRID, do=True)
+        self.assertEqual(len({json.dumps(run) for run in tuning}), len(runs.kept), "each is done once")
+        return len(tuning), {where: when_it_pays.slots(machine) for where, machine in machines.items()}
+
+    def test_each_frame_gets_its_best(self):
+        """Stacks want 8 slots with bounces on the terrain, and more with spheres and with lists; warps are always far behind."""
+        number, machines = self.tuned(lambda spheres, lists, config: 1e9 if config == "warp_stack.yaml" else
+                                      8 * (8 if spheres else 1) * (4 if lists else 1))
+        for scene, rays, best in (("terrain", "bounces", 8), ("terrain", "shadow", 32), ("spheres", "bounces", 64),
+                                  ("spheres", "shadow", 256)):
+            self.assertEqual(machines["area", (scene, rays), "stacks", 10000, 1], best)
+        # Joules are least with the fewest slots; the best of the first frame is tried on all.
+        self.assertEqual({machines["energy", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {4})
+        self.assertEqual(machines["area", ("terrain", "bounces"), "repacked warps", 10000, 1], 1024)
+        all_of_them = 4 * sum(len(when_it_pays.settings(kind, self.GRID)) for kind in when_it_pays.KINDS)
+        self.assertLess(number, all_of_them)
+
+    def test_what_is_far_behind_is_tuned_no_further(self):
+        """With warps 8 slots are best, of which they have none: their 32 are 2.4 times as slow as the best stacks."""
+        number, machines = self.tuned(lambda spheres, lists, config: 8)
+        self.assertEqual({machines["area", frame, "stacks in warps", 10000, 1] for frame in self.GRID.frames}, {32})
+        self.assertEqual(number, 34 + 3 * (4 * 3 + 2), "all of one frame; of three others 4, 8 and 16 slots, and the least warps")
+
+
+class Places(unittest.TestCase):
+    """What the map says of a place, where it can be told otherwise."""
+
+    @staticmethod
+    def rows(ratio):
+        """Trees and widths of memory of 1, 10, 100 and 1, 4; the ratio is a function of place."""
+        places = {(trees, channels): map_axes.Place(trees * (1.1 if channels == 4 else 1), channels / 2)
+                  for trees in (1, 10, 100) for channels in (1, 4)}
+        return {row: (place, ratio(place)) for row, place in places.items()}
+
+    def test_rows_say_what_they_are(self):
+        rows = self.rows(lambda place: 0.3 + place.tree / 90 + place.bandwidth)
+        for row, (place, ratio) in rows.items():
+            self.assertAlmostEqual(map_axes.ratio_at(rows, place), ratio)
+            self.assertEqual(map_axes.nearest_row(rows, place), row)
+
+    def test_a_power_law_is_found_between_rows(self):
+        rows = self.rows(lambda place: 0.9 * place.tree ** 0.2 * place.bandwidth ** -0.3)
+        for tree, bandwidth in ((3, 0.5), (3, 1.3), (70, 2), (1.2, 0.6)):
+            self.assertAlmostEqual(map_axes.ratio_at(rows, map_axes.Place(tree, bandwidth)), 0.9 * tree ** 0.2 * bandwidth ** -0.3)
+        edge = map_axes.ratio_at(rows, map_axes.Place(3, 2))
+        self.assertAlmostEqual(map_axes.ratio_at(rows, map_axes.Place(3, 50)), edge, msg="beyond the ends those of the ends")
+
+    def test_a_machine_stands_where_its_configuration_says(self):
+        with tempfile.TemporaryDirectory() as folder:
+            program = pathlib.Path(folder) / "carousel"
+            program.write_text(PROGRAM)
+            program.chmod(0o755)
+            run = {"config": "gpu_stack.yaml", "keys": ["scene.triangles=60000", "memory.dram.channels=4", "memory.l2_kib=256"]}
+            place = map_axes.place_of(program, run)
+        self.assertAlmostEqual(place.tree, 50 * 60000 / 1024 / (20 * (32 + 4) + 3 * 256), msg="20 units share three caches")
+        self.assertAlmostEqual(place.bandwidth, 4 * 12.8 / 20)
 
 
 if __name__ == "__main__":
