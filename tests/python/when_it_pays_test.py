@@ -1,7 +1,5 @@
 """bench/studies/when_it_pays with a program that only seems to simulate: what is killed goes on, shards share the runs and
 end in time, machines are tuned step by step, and those that differ in a hit are told. And what the map says of a place."""
-import importlib.machinery
-import importlib.util
 import json
 import math
 import os
@@ -18,11 +16,8 @@ STUDY = ROOT / "bench/studies/when_it_pays"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(STUDY.parent))
 import map_axes
-
-loader = importlib.machinery.SourceFileLoader("when_it_pays", str(STUDY))
-when_it_pays = importlib.util.module_from_spec(importlib.util.spec_from_loader("when_it_pays", loader))
-sys.modules["when_it_pays"] = when_it_pays
-loader.exec_module(when_it_pays)
+import map_machines
+import map_tuning
 
 # Notes each call. Cycles follow from the machine, hits from scene and rays. KILL_AT kills the study in a call, and LIE_AT
 # gives a call other hits. Thousands of calls: it starts without what Python searches, and imports little.
@@ -195,22 +190,22 @@ class Kept:
 
     def read(self, run):
         assert json.dumps(run) in self.kept, "only what was asked for is read"
-        slots = when_it_pays.slots(run["keys"])
+        slots = map_tuning.slots(run["keys"])
         list_of = run.get("list", {"keys": run["keys"]})
         best = self.best("scene.builtin=spheres" in list_of["keys"], "list" in run, run["config"])
         return {"rays": 1, "cycles": 1000 * (1 + abs(math.log(slots / best))), "nj_per_ray": slots, "tree_bytes": 1}
 
 
 class Tuning(unittest.TestCase):
-    GRID = when_it_pays.Grid((10000,), (1,), tuple((scene, rays) for scene in ("terrain", "spheres") for rays in ("bounces", "shadow")),
+    GRID = map_machines.Grid((10000,), (1,), tuple((scene, rays) for scene in ("terrain", "spheres") for rays in ("bounces", "shadow")),
                              (1, 2), (16, 8), (16, 8))
 
     def tuned(self, best):
         runs = Kept(best)
-        self.assertIsNone(when_it_pays.tune(runs, self.GRID)[1])
-        tuning, machines = when_it_pays.tune(runs, self.GRID, do=True)
+        self.assertIsNone(map_tuning.tune(runs, self.GRID)[1])
+        tuning, machines = map_tuning.tune(runs, self.GRID, do=True)
         self.assertEqual(len({json.dumps(run) for run in tuning}), len(runs.kept), "each is done once")
-        return len(tuning), {where: when_it_pays.slots(machine) for where, machine in machines.items()}
+        return len(tuning), {where: map_tuning.slots(machine) for where, machine in machines.items()}
 
     def test_each_frame_gets_its_best(self):
         """Stacks want 8 slots with bounces on the terrain, and more with spheres and with lists; warps are always far behind."""
@@ -222,7 +217,7 @@ class Tuning(unittest.TestCase):
         # Joules are least with the fewest slots; the best of the first frame is tried on all.
         self.assertEqual({machines["energy", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {4})
         self.assertEqual(machines["area", ("terrain", "bounces"), "repacked warps", 10000, 1], 1024)
-        all_of_them = 4 * sum(len(when_it_pays.settings(kind, self.GRID)) for kind in when_it_pays.KINDS)
+        all_of_them = 4 * sum(len(map_machines.settings(kind, self.GRID)) for kind in map_machines.KINDS)
         self.assertLess(number, all_of_them)
 
     def test_what_is_far_behind_is_tuned_no_further(self):
