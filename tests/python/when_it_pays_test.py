@@ -211,10 +211,10 @@ class Tuning(unittest.TestCase):
         """Stacks want 8 slots with bounces on the terrain, and more with spheres and with lists; warps are always far behind."""
         number, machines = self.tuned(lambda spheres, lists, config: 1e9 if config == "warp_stack.yaml" else
                                       8 * (8 if spheres else 1) * (4 if lists else 1))
-        for scene, rays, best in (("terrain", "bounces", 8), ("terrain", "shadow", 32), ("spheres", "bounces", 64),
+        for scene, rays, best in (("terrain", "bounces", 8), ("terrain", "shadow", 32), ("spheres", "bounces", 8),
                                   ("spheres", "shadow", 256)):
             self.assertEqual(machines["area", (scene, rays), "stacks", 10000, 1], best)
-        # Joules are least with the fewest slots; the best of the first frame is tried on all.
+        # Joules are least with the fewest slots.
         self.assertEqual({machines["energy", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {4})
         self.assertEqual(machines["area", ("terrain", "bounces"), "repacked warps", 10000, 1], 1024)
         all_of_them = 4 * sum(len(map_machines.settings(kind, self.GRID)) for kind in map_machines.KINDS)
@@ -224,7 +224,14 @@ class Tuning(unittest.TestCase):
         """With warps 8 slots are best, of which they have none: their 32 are 2.4 times as slow as the best stacks."""
         number, machines = self.tuned(lambda spheres, lists, config: 8)
         self.assertEqual({machines["area", frame, "stacks in warps", 10000, 1] for frame in self.GRID.frames}, {32})
-        self.assertEqual(number, 34 + 3 * (4 * 3 + 2), "all of one frame; of three others 4, 8 and 16 slots, and the least warps")
+        self.assertEqual(number, 34 + 2 * (4 * 3 + 2) + 6,
+                         "all of one frame; of shadow rays 4, 8 and 16 slots, and the least warps; of one frame no more than the best")
+
+
+    def test_where_no_ring_is_near_nothing_is_tuned(self):
+        number, machines = self.tuned(lambda spheres, lists, config: 1e6 if config == "ring_distributed.yaml" else 16 if lists else 8)
+        self.assertEqual({machines["area", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {8})
+        self.assertEqual(number, 34 + 3 * 6, "all of one frame, and its best on three others")
 
 
 class Places(unittest.TestCase):
