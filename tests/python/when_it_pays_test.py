@@ -212,7 +212,7 @@ class Tuning(unittest.TestCase):
         number, machines = self.tuned(lambda spheres, lists, config: 1e9 if config == "warp_stack.yaml" else
                                       8 * (8 if spheres else 1) * (4 if lists else 1))
         for scene, rays, best in (("terrain", "bounces", 8), ("terrain", "shadow", 32), ("spheres", "bounces", 8),
-                                  ("spheres", "shadow", 256)):
+                                  ("spheres", "shadow", 8)):
             self.assertEqual(machines["area", (scene, rays), "stacks", 10000, 1], best)
         # Joules are least with the fewest slots.
         self.assertEqual({machines["energy", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {4})
@@ -224,8 +224,8 @@ class Tuning(unittest.TestCase):
         """With warps 8 slots are best, of which they have none: their 32 are 2.4 times as slow as the best stacks."""
         number, machines = self.tuned(lambda spheres, lists, config: 8)
         self.assertEqual({machines["area", frame, "stacks in warps", 10000, 1] for frame in self.GRID.frames}, {32})
-        self.assertEqual(number, 34 + 2 * (4 * 3 + 2) + 6,
-                         "all of one frame; of shadow rays 4, 8 and 16 slots, and the least warps; of one frame no more than the best")
+        self.assertEqual(number, 34 + 4 * 3 + 2 + 2 * 6,
+                         "all of one frame; of another 4, 8 and 16 slots, and the least warps; of two no more than the best")
 
 
     def test_where_no_ring_is_near_nothing_is_tuned(self):
@@ -256,6 +256,11 @@ class Places(unittest.TestCase):
             self.assertAlmostEqual(map_axes.ratio_at(rows, map_axes.Place(tree, bandwidth)), 0.9 * tree ** 0.2 * bandwidth ** -0.3)
         edge = map_axes.ratio_at(rows, map_axes.Place(3, 2))
         self.assertAlmostEqual(map_axes.ratio_at(rows, map_axes.Place(3, 50)), edge, msg="beyond the ends those of the ends")
+
+    def test_only_the_rows_on_both_sides_count(self):
+        rows = self.rows(lambda place: math.exp(abs(math.log(place.tree / 10))))
+        for tree in (10 ** 1.5, 10 ** 0.5):
+            self.assertAlmostEqual(map_axes.ratio_at(rows, map_axes.Place(tree, 0.5)), 10 ** 0.5)
 
     def test_a_machine_stands_where_its_configuration_says(self):
         with tempfile.TemporaryDirectory() as folder:
