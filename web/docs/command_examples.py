@@ -47,7 +47,7 @@ LINES = {
         "carousel compare small small --expect identical",
     ],
     "versus": [
-        "carousel versus small.yaml --set topology.resources=2 --seeds 1 --no-search --out out/versus --quiet --log-level error",
+        "carousel versus small.yaml --set topology.resources=2 --seeds 1 --no-search --charge-all --out out/versus --quiet --log-level error",
         "carousel versus small.yaml --set topology.resources=2 --seeds 1 --no-search --out out/versus --force --json --log-file versus.log",
     ],
     "follow": [
