@@ -252,11 +252,11 @@ class Drawing {
     }
   }
 
-  /// Tells whether something may go over both of two links. One for nothing has its own fault.
+  /// Tells whether something may go over both of two links.
   static bool may_meet(const std::vector<Carried>& a, const std::vector<Carried>& b) {
     std::vector<Carried> common;
     std::ranges::set_intersection(a, b, std::back_inserter(common));
-    return a.empty() || b.empty() || !common.empty();
+    return !common.empty();
   }
 
   void add(const GraphLink& link, std::uint32_t from, std::uint32_t to) {

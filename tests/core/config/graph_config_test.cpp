@@ -367,7 +367,7 @@ TEST(GraphConfig, PartsThatCannotWorkAreRefusedByName) {
                    "topology.links.0.carries: nothing of the kind shapes travels; expected a node of the kind cache"},
            BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}],\n"
                    "  links: [{ring: 'r[*]'}, {line: 'r[0], r[1]', carries: []}]}\n",
-                   "topology.links.1: a second link from r[0] to r[1]"},
+                   "topology.links.1.carries: a link carries something; expected [packets] for example"},
            BadPart{"topology: {shape: graph, nodes: [{name: r, count: 3}],\n"
                    "  links: [{ring: 'r[*]'}, {from: 'r[0]', to: 'r[2]', carries: []}]}\n",
                    "topology.links.1.carries: a link carries something; expected [packets] for example"},
