@@ -291,15 +291,9 @@ class Search {
 
   /// Paths of a larger pilot, which is to relax these classes, or fewer of them; 0 if the budget has none.
   std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
-    const double most = budget_.left(kAtMost, out_.simulated);
-    if (!out_.unlike.empty()) {
-      // No part of a cold frame is like it.
-      if (!cold_ || worth.empty() || budget_.left(kWithFrame, out_.simulated) < 1)
-        return doubled(budget_, out_.paths, most, worth);
-      worth.resize(1);
-      return run_.paths;
-    }
+    if (!out_.unlike.empty()) return paths_after_unlike(budget_, out_.paths, cold_, out_.simulated, worth);
     if (worth.empty()) return 0;
+    const double most = budget_.left(kAtMost, out_.simulated);
     const double left =
         budget_.left(kWanted, out_.simulated) - budget_.of(seeds_.paths, static_cast<std::size_t>(noise_seeds_));
     for (std::size_t n = worth.size(); left > 0 && n >= kFewest; --n) {

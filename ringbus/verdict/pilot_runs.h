@@ -69,6 +69,16 @@ inline std::uint64_t doubled(const SearchBudget& budget, std::uint64_t pilot, do
   }
 }
 
+/// Paths of the pilot that follows one that is not like the run, for these classes or fewer: twice as many. No part of
+/// a cold frame is like it, so that the whole frame follows for one class. 0 if the budget has none.
+inline std::uint64_t paths_after_unlike(const SearchBudget& budget, std::uint64_t pilot, bool cold,
+                                        std::uint64_t simulated, std::vector<std::size_t>& classes) {
+  if (!cold || classes.empty() || budget.left(kWithFrame, simulated) < 1)
+    return doubled(budget, pilot, budget.left(kAtMost, simulated), classes);
+  classes.resize(1);
+  return budget.paths;
+}
+
 /// Paths of a search's first pilot, which so many machines simulate: the least that will do where more would take too
 /// much.
 inline std::uint64_t first_paths(const Config& config, std::uint64_t paths, const SearchBudget& budget,

@@ -5,10 +5,13 @@
 #include <atomic>
 #include <limits>
 #include <stdexcept>
+#include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/search_choices.h"
 #include "tests/ringbus/support/test_machine.h"
 
@@ -136,6 +139,32 @@ TEST(SearchBudget, APilotIsDoubledForAsManyClassesAsItHasRaysFor) {
   EXPECT_EQ(classes_for(0.19, {}), -1);
   std::vector<std::size_t> one{7};
   EXPECT_EQ(doubled(budget, 600, 9, one), 1000) << "no more than the frame";
+}
+
+// Of 5,000 rays 2,000 have been simulated, two fifths of the run's; with the whole frame they are 1.4 times as many.
+TEST(SearchBudget, AColdFrameFollowsAPilotThatIsNotLikeIt) {
+  const SearchBudget budget{1000, 5000};
+  std::vector<std::size_t> cold{7, 8, 9}, warm = cold, late = cold, none;
+  EXPECT_EQ(paths_after_unlike(budget, 100, true, 2000, cold), 1000);
+  EXPECT_EQ(cold, std::vector<std::size_t>{7});
+  EXPECT_EQ(paths_after_unlike(budget, 100, false, 2000, warm), 200);
+  EXPECT_EQ(warm, (std::vector<std::size_t>{7, 8}));
+  EXPECT_EQ(paths_after_unlike(budget, 100, true, 3000, late), 200) << "the frame would be beyond the budget";
+  EXPECT_EQ(paths_after_unlike(budget, 100, true, 2000, none), 200) << "no class is left to relax";
+}
+
+// A part that differs by 15 points or less is borne with; of two such, or of one that differs by more, those count that
+// matter.
+TEST(PilotLikeness, OnlyAPartThatMattersVetoesAnAnswer) {
+  Likeness off;
+  off.parts = {{"memory_bandwidth", 0.55, 0.3}};
+  const auto matters = [](std::string_view) { return true; };
+  const auto shading_does = [](std::string_view part) { return part == "shading"; };
+  EXPECT_EQ(off.veto(matters), "its memory_bandwidth is 55 % busy, and the run's 30 %");
+  EXPECT_EQ(off.veto(shading_does), "");
+  off.parts = {{"memory_bandwidth", 0.4, 0.3}, {"shading", 0.8, 0.9}};
+  EXPECT_EQ(off.veto(matters), "its shading is 80 % busy, and the run's 90 %");
+  EXPECT_EQ(off.veto(shading_does), "");
 }
 
 TEST(SearchChoices, AClassStandsOutUnlessCyclesAreFarOff) {
