@@ -138,7 +138,6 @@ class ShapeBuffer {
     grow_to(requests_, user + std::size_t{1});
     return users_[user];
   }
-  bool take_one(User user, const ShapeSpan& span, std::uint32_t index, Cycle now);
   bool grant(User user, const ShapeNeed& need, bool test, Cycle now);
   std::uint32_t find(const ShapeSpan& span) const;
   void remove(std::uint32_t entry);
