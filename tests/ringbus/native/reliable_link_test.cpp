@@ -82,6 +82,17 @@ TEST(ReliableLink, EveryFaultIsMadeGood) {
     }
 }
 
+// Many frames of a deep link are lost at a time, and with a link of one place no later frame tells of a loss.
+TEST(ReliableLink, DeliversThroughAnyDepth) {
+  for (const std::int64_t depth : {1, 2, 3, 64, 1000}) {
+    Config config = faulty(0.3, 0.2, 0.2, 0.3, 0.1);
+    config.topology.link.depth = depth;
+    const Delivered got = deliver(config, 300);
+    EXPECT_EQ(got.count, 300u) << depth;
+    EXPECT_TRUE(got.in_order) << depth;
+  }
+}
+
 TEST(ReliableLink, HoldsNoMoreThanItsDepth) {
   const Config config = faulty(0, 0.5, 0, 0, 0);
   const std::unique_ptr<Link> link = make_link(config, 0, ResourceId(0), ResourceId(1));
