@@ -46,6 +46,14 @@ def commit_of(program):
     return commits[0]
 
 
+def flat(config, prefix=""):
+    """Keys with dots, and their values."""
+    out = {}
+    for key, value in config.items():
+        out |= flat(value, f"{prefix}{key}.") if isinstance(value, dict) else {f"{prefix}{key}": value}
+    return out
+
+
 class Lists:
     """Lists of rays of one kind, from a picture that the native engine traces."""
 
@@ -158,6 +166,8 @@ class Runs:
                 "nj_per_ray": report["energy"]["nj_per_ray"], "mm2": report["area"]["mm2"],
                 "resources": report["config"]["topology"]["resources"],
                 "slots": report["config"]["rays"]["slots_per_resource"], "tree_bytes": report["structure"]["bytes"]}
+        if "area.fit=best" in run["keys"]:
+            kept["fitted"] = flat(report["config"])
         write(self.file(run), json.dumps(kept))
         self.note(kept)
 

@@ -82,6 +82,21 @@ class WhenItPays(unittest.TestCase):
         """Without the folder of results, which is another one each time."""
         return [tuple(word for word in call if "/tmp" not in word or "rays_from" in word) for call in calls]
 
+    def test_the_best_split_is_found_once_and_kept(self):
+        def shard(number):
+            return subprocess.run([sys.executable, STUDY.parent / "best_split", "--build", self.path, "--out", self.path / "split",
+                                   "--seeds", "2", "--shard", f"{number}/2"], capture_output=True, text=True).returncode
+        self.assertEqual([shard(1), shard(2), shard(1)], [75, 0, 0])
+        calls = [[word for before, word in zip(call, call[1:]) if before == "--set"] for call in self.calls()]
+        searches = [call for call in calls if "area.fit=best" in call]
+        rows = [call for call in calls if "area.fit=refuse" in call]
+        self.assertEqual(len(searches) + len(rows), len(calls))
+        self.assertEqual(len(searches), 3 * 12, "settings of each kind, with each width of memory")
+        self.assertEqual(len(rows), 6 * 3 * 8 * 2, "kinds, widths, scenes with rays, seeds")
+        for row in rows:
+            self.assertIn("topology.resources=8", row)
+        self.assertTrue(all("scene.builtin=terrain" in call and "image.seed=1" in call for call in searches))
+
     def test_a_killed_study_goes_on(self):
         whole = self.study()
         self.assertEqual(whole.returncode, 0, whole.stderr)
