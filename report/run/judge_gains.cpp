@@ -27,8 +27,7 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (const auto& small = b.frame_too_small)
     return fmt::format(
         "not found out: {} paths for {} ray slots mostly fill and drain the machine ({:.0f} % of the rays lie "
-        "between); "
-        "from some {} paths on, or with fewer slots, it can be said",
+        "between); from some {} paths on, or with fewer slots, most would; a search may take more",
         grouped(small->paths), grouped(small->slots), 100 * small->between, grouped(small->least_paths));
   if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
@@ -41,8 +40,10 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (named == nullptr) {
     const BottleneckGain& best = b.gains.front();
     const std::string others = best.together > 1 ? fmt::format(" with {} others", best.together - 1) : "";
-    return fmt::format("no class of parts limits it alone: the best relaxation, {}{}, gains {}{}", best.action, others,
-                       gain_text(best), best.low <= 0 && best.gain > 0 ? ", which may be noise" : "");
+    const bool noise = best.low <= 0 && best.gain > 0;
+    return fmt::format("no class of parts {}: the best relaxation, {}{}, gains {}{}",
+                       noise && best.gain > kWorthIt ? "can be told to limit it" : "limits it alone", best.action,
+                       others, gain_text(best), noise ? ", which may be noise" : "");
   }
   std::string text = fmt::format("{}: {} gains {}", named->name, named->action, gain_text(*named));
   if (!b.rivals.empty()) {
