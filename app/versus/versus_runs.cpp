@@ -176,10 +176,11 @@ class VersusRuns {
       return report::versus_ratio(values(out, "machine", member), values(out, than, member));
     };
     report::VersusPair pair{.than = than,
-                            .verdict = "alike",
+                            .verdict = {},
                             .speed = of(&report::VersusRun::rays_per_kilocycle),
                             .bytes = of(&report::VersusRun::memory_bytes_per_ray),
                             .joules = of(&report::VersusRun::nj_per_ray)};
+    pair.verdict = pair.speed.low ? "alike" : "unsure";
     if (pair.speed.surely_more()) pair.verdict = "faster";
     if (pair.speed.surely_less()) pair.verdict = "slower";
     return pair;

@@ -58,14 +58,9 @@ std::string class_words(std::string name) {
   return name;
 }
 
-/// The verdict in a word; of one seed there is none.
-std::string verdict_word(const VersusPair& pair) {
-  return pair.speed.low ? pair.verdict : "unsure";
-}
-
 std::string speed_line(const VersusMachine& machine, const VersusMachine& twin, const VersusPair& pair,
                        std::uint64_t seeds) {
-  return fmt::format("{}: {} times as fast as its twin, {} over {} rays per kilocycle, {} seeds", verdict_word(pair),
+  return fmt::format("{}: {} times as fast as its twin, {} over {} rays per kilocycle, {} seeds", pair.verdict,
                      ratio_text(pair.speed), mean_text(machine.rays_per_kilocycle), mean_text(twin.rays_per_kilocycle),
                      seeds);
 }
@@ -84,7 +79,7 @@ std::string area_line(const VersusMachine& machine, const VersusMachine* twin, c
   return fmt::format(
       "{} at equal area, {} times as fast: the twin has {} resources in {:.4g} mm2, this machine {} in "
       "{:.4g}{}",
-      verdict_word(*pair), ratio_text(pair->speed), twin->resources, twin->mm2, machine.resources, machine.mm2,
+      pair->verdict, ratio_text(pair->speed), twin->resources, twin->mm2, machine.resources, machine.mm2,
       drawn ? "; that twin is not drawn, and its requests cross no link of the drawing" : "");
 }
 

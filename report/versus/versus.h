@@ -71,7 +71,7 @@ struct VersusPair {
 template <class V>
 void describe(V& v, const VersusPair& r) {
   v.field("than", r.than, "", "twin or twin_at_equal_area");
-  v.field("verdict", r.verdict, "", "faster, slower, or alike where the interval holds 1 or there is none");
+  v.field("verdict", r.verdict, "", "faster, slower, alike where the interval holds 1, or unsure of one seed");
   v.section("speed", r.speed, "rays a cycle of this machine over those of the twin");
   v.section("bytes", r.bytes, "bytes of memory a ray, likewise");
   v.section("joules", r.joules, "joules a ray, likewise");

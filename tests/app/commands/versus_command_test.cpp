@@ -141,9 +141,16 @@ TEST(VersusLines, HaveOneOfAThingInTheSingularAndWideIntervalsByTheirEnds) {
   const std::vector<std::string> lines = report::versus_lines(v);
   EXPECT_THAT(lines[0], HasSubstr("alike: 0.800 (0.25 to 3.125) times as fast"));
   EXPECT_THAT(lines[0], HasSubstr(", 1 seed"));
-  v.against.front().speed = {0.8};
-  EXPECT_THAT(report::versus_lines(v)[0], HasSubstr("unsure: 0.800 times as fast"));
   EXPECT_THAT(lines[2], HasSubstr("2.000 ± 0.500 times as fast: the twin has 1 resource in 2 mm2"));
+}
+
+TEST(VersusCommand, IsUnsureOfOneSeed) {
+  const Program program;
+  program.write("a.yaml", kRing);
+  const Outcome outcome = program.run({"versus", "a.yaml", "--seeds", "1", "--no-search", "--out", "o"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.out, HasSubstr("unsure: "));
+  EXPECT_EQ(Json::parse(program.read("o/versus.json"))["against"][0]["verdict"], "unsure");
 }
 
 // Everything that has a key is charged on both sides.
