@@ -172,8 +172,10 @@ std::optional<Row> MachineSpace::draw(std::mt19937& random, Domains domains) {
 
 Cell MachineSpace::draw_cell(std::mt19937& random, std::span<const std::string> with) {
   const Domains allowed = domains(with);
-  if (!allowed.empty())
+  for (int attempt = 0; attempt < 5 && !allowed.empty(); ++attempt) {
     if (const std::optional<Row> row = draw(random, allowed)) return cell(*row);
+    refusals_.clear();  // one that was believed wrongly leaves nothing to draw
+  }
   throw std::logic_error("the validator refuses every machine with these settings");
 }
 
