@@ -2,7 +2,12 @@
 #include "shading/raster/first_hits.h"
 
 #include <array>
+#include <cstdint>
+#include <deque>
 #include <iostream>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -281,7 +286,8 @@ TEST(FirstHits, EnginesAgree) {
 TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   if (kThreadSanitizer) GTEST_SKIP() << kOneThread;
   const scene::Scene scene = builtin_scene(BuiltinScene::kCornell, 36, 60);
-  Config config = picture(16, 12, 2);
+  constexpr std::uint64_t kPaths = 80 * 56, kRun = 16;
+  Config config = picture(80, 56, 1);
   config.engine.kind = EngineKind::kCycle;
   config.topology.resources = 3;
   config.rays.slots_per_resource = 20;
@@ -289,14 +295,21 @@ TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   config.shading.cycles_per_shade = 400;
   const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());
   const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
-  const auto frame = [&](const Config& machine, std::uint64_t, std::uint64_t = 0) {
+  std::deque<shading::PathSample> samples;
+  const auto frame = [&](const Config& machine, std::uint64_t paths, std::uint64_t = 0) {
     auto tracer = std::make_unique<shading::PathTracer>(scene, machine, 60, 1);
     tracer->set_first_hits(&raster);
+    if (paths < kPaths) {
+      std::vector<shading::PathSample::Run> runs;
+      for (std::uint64_t i = 0; i < paths / kRun; ++i)
+        runs.push_back({i * (kPaths / kRun) / (paths / kRun) * kRun, kRun});
+      tracer->set_sample(&samples.emplace_back(std::move(runs)));
+    }
     return tracer;
   };
-  const auto tracer = frame(config, 0);
+  const auto tracer = frame(config, kPaths);
   const RunResult run = run_cycle(config, accel, 10, *tracer, on_threads(1));
-  const Bottleneck found = find_bottleneck(config, accel, 10, frame, {run, 16 * 12 * 2}, on_threads(1));
+  const Bottleneck found = find_bottleneck(config, accel, 10, frame, {run, kPaths}, on_threads(1));
   ASSERT_FALSE(found.gains.empty());
   EXPECT_EQ(found.gains.front().name, "shading");
 }
