@@ -144,8 +144,12 @@ std::optional<report::CycleNoise> noise_of(const ringbus::Bottleneck& found, con
 }
 
 /// A frame that is too small for a verdict, with what the run's ledger tells all the same.
-report::FrameTooSmall too_small(const ringbus::RunResult& run, const ringbus::SmallFrame& small) {
-  report::FrameTooSmall out{small.paths, small.slots, small.between, small.least_paths};
+report::FrameTooSmall too_small(const ringbus::RunResult& run, const ringbus::SmallFrame& small, bool search) {
+  report::FrameTooSmall out{.paths = small.paths,
+                            .slots = small.slots,
+                            .between = small.between,
+                            .search = search,
+                            .least_paths = small.least_paths};
   for (const ringbus::cycle::ClassUse& use : run.cycle->uses)
     if (const double busy = ringbus::busy(*run.cycle, use.name); use.parts > 0 && busy > out.busy) {
       out.busiest = use.name;
@@ -162,7 +166,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   if (!run.complete) return report::judge_gains({.complete = false});
   const std::uint64_t slots = ringbus::slots_of(prepared.config());
   if (const auto small = ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), slots))
-    return report::judge_gains({.frame_too_small = too_small(run, *small)});
+    return report::judge_gains({.frame_too_small = too_small(run, *small, false)});
   ringbus::RunOptions options;
   options.threads = prepared.threads_beside;
   spdlog::debug("search: up to {} simulations at once", options.threads);
@@ -187,7 +191,11 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
       searched, options, show);
   noise = noise_of(found, run);
   if (found.least_paths > 0)
-    return report::judge_gains({.frame_too_small = too_small(run, {job.first_rays(), slots, 1, found.least_paths})});
+    return report::judge_gains(
+        {.frame_too_small = too_small(
+             run,
+             {job.first_rays(), slots, ringbus::part_between(*run.cycle, run.rays_completed, slots), found.least_paths},
+             true)});
   spdlog::debug("search: simulated {} rays, {:.2f} times those of the run", found.simulated,
                 report::ratio(found.simulated, run.rays_completed));
   if (found.whole)

@@ -5,12 +5,12 @@
 
 namespace carousel {
 
-/// Makes a vector so long, if it is shorter. What makes it longer is kept out of the code around a call: a vector that
-/// has grown to the numbers that occur never does so again.
+/// Makes a vector `size` items long. This code stands apart from that around a call, as a vector seldom grows.
 template <class T>
 [[gnu::cold, gnu::noinline]] void lengthen(std::vector<T>& items, std::size_t size) {
   items.resize(size);
 }
+/// Makes a vector `size` items long if it is shorter.
 template <class T>
 void grow_to(std::vector<T>& items, std::size_t size) {
   if (items.size() < size) [[unlikely]]

@@ -19,7 +19,7 @@ const BottleneckGain& named_cold(const Bottleneck& b) {
 
 std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (!b.complete) return "not found out: the search was interrupted";
-  if (const auto& small = b.frame_too_small; small && small->between >= 1)
+  if (const auto& small = b.frame_too_small; small && small->search)
     return fmt::format(
         "not found out: {} paths for {} ray slots are too few for a search that takes no longer than the run; from "
         "some {} paths on, or with fewer slots, it can be said; {} was the busiest part, {:.0f} % of the time",

@@ -62,6 +62,7 @@ void describe(V& v, const BottleneckGain& r) {
 struct FrameTooSmall {
   std::uint64_t paths = 0, slots = 0;
   double between = 0;
+  bool search = false;
   std::uint64_t least_paths = 0;
   std::string busiest{};
   double busy = 0;
@@ -72,8 +73,8 @@ void describe(V& v, const FrameTooSmall& r) {
   v.field("paths", r.paths, "paths", "paths, or rays of a list, that the frame begins");
   v.field("slots", r.slots, "slots", "ray slots of the machine");
   v.field("between", r.between, "fraction",
-          "part of the rays that were completed between fill and drain; three quarters would do; 1 where the least "
-          "search would take longer than it may");
+          "part of the rays that were completed between fill and drain; three quarters would do");
+  v.field("search", r.search, "", "the frame fills the machine, but the least search would take longer than it may");
   v.field("least_paths", r.least_paths, "paths", "paths that would do on this machine, about");
   v.field("busiest", r.busiest, "", "class of parts that was busy for most of the run");
   v.field("busy", r.busy, "fraction", "part of the time in which its parts were busy, in the mean");

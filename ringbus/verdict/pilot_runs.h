@@ -34,10 +34,11 @@ enum class PilotSize : std::uint8_t { kFull, kLeast };
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted,
                           PilotSize least);
 
-// What a search may cost, as a part of the run's rays. A pilot's ray takes about as long as one of the run.
+// These bound what a search simulates, as parts of the run's rays. A pilot's ray takes about as long as one of the run.
+// A pilot's paths stand for as many rays as the run's; where they have more, the search takes more.
 inline constexpr double kScreening = 0.4;   ///< that the first pilot is to take
 inline constexpr double kWanted = 0.75;     ///< that all pilots are to take
-inline constexpr double kAtMost = 1.1;      ///< beyond which no simulation begins
+inline constexpr double kAtMost = 1.1;      ///< beyond which no simulation begins after the first pilot
 inline constexpr double kWithFrame = 1.55;  ///< the same, where the last one is the whole frame
 
 struct SearchBudget {
@@ -52,7 +53,7 @@ struct SearchBudget {
   double of(std::uint64_t pilot, std::size_t simulations) const {
     return static_cast<double>(simulations * pilot) / static_cast<double>(paths);
   }
-  /// What is left of this part of the run's rays when so many have been simulated.
+  /// Returns the part that is left of `part` when so many rays have been simulated.
   double left(double part, std::uint64_t simulated) const {
     return part - static_cast<double>(simulated) / static_cast<double>(rays);
   }

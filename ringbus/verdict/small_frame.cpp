@@ -18,12 +18,17 @@ std::uint64_t two_digits_up(double value) {
   return static_cast<std::uint64_t>(std::ceil(value / unit) * unit);
 }
 
+double part_between(const cycle::CycleResult& result, std::uint64_t rays, std::uint64_t slots) {
+  if (!result.all_begun || rays == 0) return 0;
+  const std::uint64_t begun = result.all_begun->completed, filled = fill_rays(slots);
+  return begun > filled ? static_cast<double>(begun - filled) / static_cast<double>(rays) : 0;
+}
+
 std::optional<SmallFrame> small_frame(const cycle::CycleResult& result, std::uint64_t rays, std::uint64_t paths,
                                       std::uint64_t slots) {
   if (!result.all_begun || rays == 0 || paths == 0) return std::nullopt;
   const std::uint64_t begun = result.all_begun->completed, filled = fill_rays(slots);
-  const double all = static_cast<double>(rays);
-  const double between = begun > filled ? static_cast<double>(begun - filled) / all : 0;
+  const double all = static_cast<double>(rays), between = part_between(result, rays, slots);
   if (between >= kLeastBetween) return std::nullopt;
   // A machine that was never full has less to drain than a full one.
   const double each = all / static_cast<double>(paths),

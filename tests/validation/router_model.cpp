@@ -205,7 +205,7 @@ class Router {
   std::vector<std::vector<Index>> asking_;  // by way in and out: the channel
 };
 
-/// What creates packets for a router, and takes those that have come.
+/// The terminal of a router: it creates packets, and takes those that have come.
 class Node {
  public:
   Node(const Rules& rules, Index nodes, Link& in, Link& out)

@@ -37,7 +37,7 @@ inline ReliableLinkSettings reliable_link_settings(const LinkConfig& link, const
 /// taken gives its place back. Users of the link see no packet lost, doubled or out of order.
 ///
 /// Each frame on the wire has a number of its own, and an acknowledgement names the greatest that the receiver has
-/// heard. What went on the wire before that one and is missing is lost, and is sent again alone (selective repeat;
+/// heard. A frame that was sent before that one and is missing is lost. It is sent again alone (selective repeat;
 /// Tanenbaum, Computer Networks, "a protocol using selective repeat"; Y. Cheng et al., The RACK-TLP Loss Detection
 /// Algorithm for TCP, RFC 8985). After silence the sender sends one frame for an answer.
 ///

@@ -68,7 +68,7 @@ TEST(JudgeGains, SaysThatItWasInterrupted) {
 }
 
 TEST(JudgeGains, SaysThatTheFrameIsTooSmall) {
-  const Bottleneck b = judge_gains({.frame_too_small = FrameTooSmall{12000, 8192, 0.31, 36000}});
+  const Bottleneck b = judge_gains({.frame_too_small = FrameTooSmall{12000, 8192, 0.31, false, 36000}});
   EXPECT_THAT(b.limits, IsEmpty());
   EXPECT_EQ(b.verdict,
             "not found out: 12,000 paths for 8,192 ray slots mostly fill and drain the machine (31 % of the rays lie "
@@ -85,7 +85,7 @@ TEST(JudgeGains, AClassOfAGroupIsARivalAndNotNamed) {
 }
 
 TEST(JudgeGains, SaysThatASearchWouldTakeTooLong) {
-  const Bottleneck b = judge_gains({.frame_too_small = FrameTooSmall{768, 64, 1, 3200, "shading", 0.9}});
+  const Bottleneck b = judge_gains({.frame_too_small = FrameTooSmall{768, 64, 0.8, true, 3200, "shading", 0.9}});
   EXPECT_THAT(b.limits, IsEmpty());
   EXPECT_EQ(
       b.verdict,
