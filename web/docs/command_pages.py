@@ -18,7 +18,10 @@ def help_rows(text, section):
         if not line.startswith(" "):
             inside = line.rstrip() == f"{section}:"
         elif inside and re.match(r"  \S", line):
-            name, _, meaning = re.sub(r"^  ", "", line).partition("  ")
+            name, gap, meaning = re.sub(r"^  ", "", line).partition("  ")
+            full = re.match(r"(.{27}) (?!Needs:|Excludes:)([A-Z].*)$", name)  # a name that fills its column
+            if not gap and full:
+                name, meaning = full.groups()
             found.append([name.strip(), meaning.strip()])
         elif inside and found:
             found[-1][1] = f"{found[-1][1]} {line.strip()}".strip()
