@@ -80,7 +80,7 @@ class WhenItPays(unittest.TestCase):
     @staticmethod
     def machines(calls):
         """Without the folder of results, which is another one each time."""
-        return [tuple(word for word in call if "/tmp" not in word or "rays_from" in word) for call in calls]
+        return [tuple(word for word in call if tempfile.gettempdir() not in word or "rays_from" in word) for call in calls]
 
     def test_the_best_split_is_found_once_and_kept(self):
         def shard(number):
