@@ -18,7 +18,7 @@ from marked_tables import ROOT
 
 # A first guess of a run's time on one core, until runs have been timed: a start, a triangle of the tree, a ray.
 GUESS = (1.0, 3e-6, 5e-5)
-
+A_SEARCH = 30  # runs that area.fit: best takes
 
 REFUSE, REDO, TAKE = "refuse", "redo", "take"  # what is done with kept runs of another commit
 
@@ -109,16 +109,16 @@ class Runs:
                      "--others take takes them as they are, and --out names another folder")
 
     def note(self, kept):
-        self.paces.append(kept["seconds"] / self.guess(kept["triangles"], kept["rays"]))
+        self.paces.append(kept["seconds"] / self.guess(kept["run"], kept["rays"]))
 
     @staticmethod
-    def guess(triangles, rays):
+    def guess(run, rays):
         start, each_triangle, each_ray = GUESS
-        return start + each_triangle * triangles + each_ray * rays
+        return (A_SEARCH if "area.fit=best" in run["keys"] else 1) * (start + each_triangle * run["triangles"] + each_ray * rays)
 
     def foretold(self, run):
         """Seconds that the run takes, by those that have been timed."""
-        return self.guess(run["triangles"], run["rays"]) * (statistics.median(self.paces) if self.paces else 1)
+        return self.guess(run, run["rays"]) * (statistics.median(self.paces) if self.paces else 1)
 
     def file(self, run):
         return self.folder / (hashlib.sha256(json.dumps(run).encode()).hexdigest()[:24] + ".json")

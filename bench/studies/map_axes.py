@@ -9,13 +9,13 @@ import sys
 
 from marked_tables import ROOT
 
-CHANNEL_BYTES = 12.8  # a cycle of 1 ns: 16 bits of LPDDR5 at 6,400 million transfers a second
+CHANNEL_BYTES = {"lpddr5_6400": 12.8, "gddr6_14": 28, "hbm2_2": 32}  # of a channel in a cycle of 1 ns
 
 
 @dataclasses.dataclass(frozen=True)
 class Place:
-    tree: float  # bytes of the tree over bytes of all buffers and caches
-    bandwidth: float  # bytes a cycle of memory, for each unit
+    tree: float  # bytes of the tree for each square millimetre of the budget
+    bandwidth: float  # bytes a cycle of memory for each square millimetre
 
     def logs(self):
         return math.log(self.tree), math.log(self.bandwidth)
@@ -25,15 +25,14 @@ class Place:
 
 
 def place_of(program, run):
-    """Of the machine of a run, as `carousel check` fits it to its area."""
+    """Of the machine of a run, as `carousel check` resolves it."""
     command = [program, "check", ROOT / "configs" / run["config"], "--json"]
     done = subprocess.run([*command, *(word for key in run["keys"] for word in ("--set", key))], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"check {run['config']} {' '.join(run['keys'])}: {done.stderr or done.stdout}")
     told = json.loads(done.stdout)
-    memory, units = told["resolved"]["memory"], told["resolved"]["topology"]["resources"]
-    chip = 1024 * (units * (memory["shape_buffer_kib"] + memory["l1_kib"]) + -(-units // memory["shared_by"]) * memory["l2_kib"])
-    return Place(told["memory"]["parts"]["structure"] / chip, CHANNEL_BYTES * memory["dram"]["channels"] / units)
+    dram, area = told["resolved"]["memory"]["dram"], told["resolved"]["area"]["budget_mm2"]
+    return Place(told["memory"]["parts"]["structure"] / area, CHANNEL_BYTES[dram["preset"]] * dram["channels"] / area)
 
 
 def between(points, at):

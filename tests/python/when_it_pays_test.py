@@ -1,5 +1,6 @@
 """bench/studies/when_it_pays with a program that only seems to simulate: what is killed goes on, shards share the runs and
-end in time, machines are tuned step by step, and those that differ in a hit are told. And what the map says of a place."""
+end in time, each row takes the best of the splits that were found, and machines that differ in a hit are told. And what the
+map says of a place."""
 import json
 import math
 import os
@@ -16,8 +17,6 @@ STUDY = ROOT / "bench/studies/when_it_pays"
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(STUDY.parent))
 import map_axes
-import map_machines
-import map_tuning
 
 # Notes each call. Cycles follow from the machine, hits from scene and rays. KILL_AT kills the study in a call, and LIE_AT
 # gives a call other hits. Thousands of calls: it starts without what Python searches, and imports little.
@@ -30,9 +29,9 @@ if sys.argv[1] == "check":
     keys = dict(word.split("=", 1) for before, word in zip(sys.argv, sys.argv[1:]) if before == "--set")
     print(json.dumps({
         "memory": {"parts": {"structure": 50 * int(keys.get("scene.triangles", 0))}},
-        "resolved": {"topology": {"resources": 20}, "memory": {
-            "shape_buffer_kib": 32, "l1_kib": 4, "l2_kib": int(keys.get("memory.l2_kib", 512)), "shared_by": 8,
-            "dram": {"channels": int(keys.get("memory.dram.channels", 1))}}}}))
+        "resolved": {"memory": {
+            "dram": {"preset": keys.get("memory.dram.preset"), "channels": int(keys.get("memory.dram.channels", 1))}},
+            "area": {"budget_mm2": float(keys["area.budget_mm2"])}}}))
     sys.exit(0)
 calls = os.path.dirname(os.path.abspath(__file__)) + "/calls"
 with open(calls, "a+") as file:
@@ -54,7 +53,7 @@ print(json.dumps({
     "digest": {"hits": "wrong" if number == int(os.environ.get("LIE_AT", 0)) else number_of(rays)},
     "engine": {"cycles": 1000 + number_of([sys.argv[2], *sets]) % 1000}, "rays": {"completed": 5000},
     "energy": {"nj_per_ray": 1 + number_of(sets) % 7}, "area": {"mm2": 40}, "structure": {"bytes": 500000},
-    "config": {"topology": {"resources": 8}, "rays": {"slots_per_resource": 32}}}))
+    "config": {"topology": {"resources": 8 + number_of(sets) % 8}, "rays": {"slots_per_resource": 32}}}))
 '''
 
 
@@ -82,27 +81,39 @@ class WhenItPays(unittest.TestCase):
         """Without the folder of results, which is another one each time."""
         return [tuple(word for word in call if tempfile.gettempdir() not in word or "rays_from" in word) for call in calls]
 
-    def test_the_best_split_is_found_once_and_kept(self):
-        def shard(number):
-            return subprocess.run([sys.executable, STUDY.parent / "best_split", "--build", self.path, "--out", self.path / "split",
-                                   "--seeds", "2", "--shard", f"{number}/2"], capture_output=True, text=True).returncode
-        self.assertEqual([shard(1), shard(2), shard(1)], [75, 0, 0])
-        calls = [[word for before, word in zip(call, call[1:]) if before == "--set"] for call in self.calls()]
-        searches = [call for call in calls if "area.fit=best" in call]
-        rows = [call for call in calls if "area.fit=refuse" in call]
-        self.assertEqual(len(searches) + len(rows), len(calls))
-        self.assertEqual(len(searches), 3 * 12, "settings of each kind, with each width of memory")
-        self.assertEqual(len(rows), 6 * 3 * 8 * 2, "kinds, widths, scenes with rays, seeds")
-        for row in rows:
-            self.assertIn("topology.resources=8", row)
-        self.assertTrue(all("scene.builtin=terrain" in call and "image.seed=1" in call for call in searches))
+    @staticmethod
+    def kept(folder):
+        return [json.loads(file.read_text()) for file in folder.glob("*.json")]
+
+    def test_each_row_takes_the_best_split(self):
+        done = self.study()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        kept = self.kept(self.path / "out")
+        found = [one for one in kept if "area.fit=best" in one["run"]["keys"]]
+        self.assertEqual(len(found), 2 * (12 + 6), "with each width of memory all slots on one frame, the best of them on another")
+        self.assertEqual(sum("list" in one["run"] for one in found), 2 * 6)
+        number = lambda keys, name: next(int(key.split("=")[1]) for key in keys if key.startswith(name))
+        splits = {(one["run"]["config"], number(one["run"]["keys"], "memory.dram.channels"), one["fitted"]["topology.resources"]) for one in found}
+        for one in kept:
+            keys = one["run"]["keys"]
+            if one not in found:
+                self.assertIn("area.fit=refuse", keys)
+                self.assertIn((one["run"]["config"], number(keys, "memory.dram.channels"), number(keys, "topology.resources")), splits)
+        # Of stacks with one channel, each frame: the second seed ran the machine with the fewest cycles of the first, and the one
+        # with the fewest joules.
+        for frame in ("image.max_depth=1", "image.max_depth=4"):
+            mine = [one for one in kept if one not in found and one["run"]["config"] == "gpu_stack.yaml" and frame in one["run"]["keys"]
+                    and "memory.dram.channels=1" in one["run"]["keys"]]
+            machine = lambda one: one["run"]["keys"][one["run"]["keys"].index("engine.threads=1") + 1:]
+            first, second = ([one for one in mine if f"image.seed={seed}" in one["run"]["keys"]] for seed in (1, 2))
+            best = [machine(min(first, key=lambda one: one[what])) for what in ("cycles", "nj_per_ray")]
+            self.assertEqual(sorted(map(machine, second)), sorted(best[:1] if best[0] == best[1] else best))
 
     def test_a_killed_study_goes_on(self):
         whole = self.study()
         self.assertEqual(whole.returncode, 0, whole.stderr)
         all_runs = self.calls()
-        said = int(re.search(r"(\d+) runs are left", whole.stderr)[1])
-        self.assertEqual(len(all_runs), said)
+        said = len(all_runs)
         self.assertEqual(len(set(self.machines(all_runs))), said, "no run is made twice")
         self.assertEqual(whole.stdout.count("\n"), 2 + 4 * 2, "a row for each kind of rays and number of channels")
         again = self.study()
@@ -119,16 +130,17 @@ class WhenItPays(unittest.TestCase):
         self.assertEqual(len(self.calls()), said - len(kept))
 
     def test_shards_share_the_runs(self):
-        said, seen = None, []
-        for shard in ("1/3", "2/3", "3/3"):
-            done = self.study("--shard", shard)
-            self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
-            said = said or int(re.search(r"(\d+) runs are left", done.stderr)[1])
-            mine = self.machines(self.calls())
-            self.assertEqual(len(mine), said // 3)
-            seen += mine
-        self.assertEqual(len(set(seen)), said)
-        self.assertEqual(len(seen), said)
+        self.assertEqual(self.study("--shard", "1/3").returncode, 75, "the others still search")
+        first = self.machines(self.calls())
+        self.assertEqual(len(first), 12 * 2 // 3)
+        seen, left = first, {"2/3", "3/3", "1/3"}
+        while left:
+            for shard in sorted(left):
+                done = self.study("--shard", shard)
+                self.assertIn((done.returncode, done.stdout), ((0, ""), (75, "")), done.stderr)
+                seen += self.machines(self.calls())
+                left -= {shard} if done.returncode == 0 else set()
+        self.assertEqual(len(set(seen)), len(seen))
         self.assertIn("| terrain | camera |", self.study().stdout)
         self.assertEqual(self.calls(), [])
 
@@ -139,7 +151,7 @@ class WhenItPays(unittest.TestCase):
         counted = self.study("--count")
         self.assertEqual(counted.returncode, 0)
         self.assertEqual(self.calls(), [])
-        self.assertRegex(counted.stderr, r"\d+ runs are left of 0 for tuning and \d+ for the map, some \d+\.\d hours")
+        self.assertRegex(counted.stderr, r"first searches: 24 runs are left of 24, some \d+\.\d hours of one core, by a guess")
 
     def test_runs_of_another_commit_are_not_taken_unasked(self):
         whole = self.study()
@@ -168,10 +180,41 @@ class WhenItPays(unittest.TestCase):
         self.assertIn("expected 2 to 2 with this grid", self.study("--seeds", "1").stderr)
         self.assertEqual(self.study("--seeds", "2").stdout, self.study().stdout)
         self.assertIn("expected 2 to 5", self.study("--grid", "small", "--seeds", "6").stderr)
-        left = [int(re.search(r"(\d+) for the map", self.study("--grid", "small", "--count", *seeds).stderr)[1])
-                for seeds in (["--seeds", "2"], ["--seeds", "3"], [])]
-        self.assertEqual(left[1] - left[0], 8 * 9 * 6, "frames, sizes and channels, kinds")
-        self.assertEqual(left[2] - left[1], 2 * 8 * 9 * 6)
+        self.calls()
+        self.assertEqual(self.study("--seeds", "2").returncode, 0)
+        self.assertEqual(self.calls(), [])
+
+    def test_rows_have_the_seeds_that_are_kept(self):
+        self.assertEqual(self.study().returncode, 0)
+        self.calls()
+        gone = next(file for file in (self.path / "out").glob("*.json") if {"image.seed=2", "image.max_depth=1", "memory.dram.channels=16"}
+                    <= set(json.loads(file.read_text())["run"]["keys"]))
+        gone.unlink()
+        done = self.study("--kept")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual(self.calls(), [])
+        seeds = {tuple(cell.strip() for cell in line.split("|")[2:6:2]): line.split("|")[5].strip() for line in done.stdout.splitlines()[2:]}
+        self.assertEqual(seeds.pop(("camera", "16")), "1")
+        self.assertEqual(set(seeds.values()), {"2"})
+        for file in (self.path / "out").glob("*.json"):
+            file.unlink()
+        self.assertIn("first searches are missing", self.study("--kept").stderr)
+
+    def test_the_map_is_asked_for_machines_beyond_it(self):
+        self.assertEqual(self.study().returncode, 0)
+        self.calls()
+        done = self.study("--beyond")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        calls = self.calls()
+        self.assertEqual(len(calls), 12 * 2, "of each a ring and a conventional machine")
+        self.assertTrue(all("area.fit=best" in call for call in calls))
+        rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in done.stdout.splitlines() if line.startswith("| ")][1:]
+        self.assertEqual(len(rows), 12)
+        for *_, pair, choice, told, found, right in rows:
+            ring, stack = pair.split(" over ")
+            self.assertEqual(choice, ring if float(told) > 1 else stack)
+            self.assertEqual(right, "yes" if (float(told) > 1) == (float(found) > 1) else "no")
+        self.assertIn(f"Right: {sum(row[-1] == 'yes' for row in rows)} of 12.", done.stdout)
 
     def test_other_hits_are_told(self):
         lie = self.study(LIE_AT="7")
@@ -190,66 +233,6 @@ class WhenItPays(unittest.TestCase):
             self.assertEqual(places == sorted(places), kind == "shadow")
 
 
-class Kept:
-    """Runs whose cycles follow from the slots: those of the settings are the fewer, the nearer slots are to `best`."""
-
-    def __init__(self, best):
-        self.best, self.kept = best, set()
-
-    def do(self, runs):
-        self.kept |= {json.dumps(run) for run in runs}
-        return True
-
-    def missing(self, runs):
-        return [run for run in runs if json.dumps(run) not in self.kept]
-
-    def read(self, run):
-        assert json.dumps(run) in self.kept, "only what was asked for is read"
-        slots = map_tuning.slots(run["keys"])
-        list_of = run.get("list", {"keys": run["keys"]})
-        best = self.best("scene.builtin=spheres" in list_of["keys"], "list" in run, run["config"])
-        return {"rays": 1, "cycles": 1000 * (1 + abs(math.log(slots / best))), "nj_per_ray": slots, "tree_bytes": 1}
-
-
-class Tuning(unittest.TestCase):
-    GRID = map_machines.Grid((10000,), (1,), (("terrain", "bounces"), ("terrain", "shadow"), ("spheres", "shadow"), ("spheres", "shuffled")),
-                             (1, 2), (16, 8), (16, 8))
-
-    def tuned(self, best):
-        runs = Kept(best)
-        self.assertIsNone(map_tuning.tune(runs, self.GRID)[1])
-        tuning, machines = map_tuning.tune(runs, self.GRID, do=True)
-        self.assertEqual(len({json.dumps(run) for run in tuning}), len(runs.kept), "each is done once")
-        return len(tuning), {where: map_tuning.slots(machine) for where, machine in machines.items()}
-
-    def test_each_frame_gets_its_best(self):
-        """Stacks want 8 slots with bounces on the terrain, more with lists and with spheres; shuffled rays are not tuned by
-        themselves, and warps are always far behind."""
-        number, machines = self.tuned(lambda spheres, lists, config: 1e9 if config == "warp_stack.yaml" else
-                                      8 * (8 if spheres else 1) * (4 if lists else 1))
-        for scene, rays, best in (("terrain", "bounces", 8), ("terrain", "shadow", 32), ("spheres", "shuffled", 8),
-                                  ("spheres", "shadow", 256)):
-            self.assertEqual(machines["area", (scene, rays), "stacks", 10000, 1], best)
-        # Joules are least with the fewest slots.
-        self.assertEqual({machines["energy", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {4})
-        self.assertEqual(machines["area", ("terrain", "bounces"), "repacked warps", 10000, 1], 1024)
-        all_of_them = 4 * sum(len(map_machines.settings(kind, self.GRID)) for kind in map_machines.KINDS)
-        self.assertLess(number, all_of_them)
-
-    def test_what_is_far_behind_is_tuned_no_further(self):
-        """With warps 8 slots are best, of which they have none: their 32 are 2.4 times as slow as the best stacks."""
-        number, machines = self.tuned(lambda spheres, lists, config: 8)
-        self.assertEqual({machines["area", frame, "stacks in warps", 10000, 1] for frame in self.GRID.frames}, {32})
-        self.assertEqual(number, 34 + 2 * (4 * 3 + 2) + 6,
-                         "all of one frame; of two 4, 8 and 16 slots, and the least warps; of shuffled rays no more than the best")
-
-
-    def test_where_no_ring_is_near_nothing_is_tuned(self):
-        number, machines = self.tuned(lambda spheres, lists, config: 1e6 if config == "ring_distributed.yaml" else 16 if lists else 8)
-        self.assertEqual({machines["area", frame, "stacks", 10000, 1] for frame in self.GRID.frames}, {8})
-        self.assertEqual(number, 34 + 3 * 6, "all of one frame, and its best on three others")
-
-
 class Places(unittest.TestCase):
     """What the map says of a place, where it can be told otherwise."""
 
@@ -262,8 +245,9 @@ class Places(unittest.TestCase):
 
     def test_rows_say_what_they_are(self):
         rows = self.rows(lambda place: 0.3 + place.tree / 90 + place.bandwidth)
-        for row, (place, ratio) in rows.items():
+        for place, ratio in rows.values():
             self.assertAlmostEqual(map_axes.ratio_at(rows, place), ratio)
+        for row, (place, _) in rows.items():
             self.assertEqual(map_axes.nearest_row(rows, place), row)
 
     def test_a_power_law_is_found_between_rows(self):
@@ -283,10 +267,11 @@ class Places(unittest.TestCase):
             program = pathlib.Path(folder) / "carousel"
             program.write_text(PROGRAM)
             program.chmod(0o755)
-            run = {"config": "gpu_stack.yaml", "keys": ["scene.triangles=60000", "memory.dram.channels=4", "memory.l2_kib=256"]}
+            run = {"config": "gpu_stack.yaml", "keys": ["scene.triangles=60000", "memory.dram.preset=gddr6_14", "memory.dram.channels=4",
+                                                        "area.budget_mm2=25"]}
             place = map_axes.place_of(program, run)
-        self.assertAlmostEqual(place.tree, 50 * 60000 / 1024 / (20 * (32 + 4) + 3 * 256), msg="20 units share three caches")
-        self.assertAlmostEqual(place.bandwidth, 4 * 12.8 / 20)
+        self.assertAlmostEqual(place.tree, 50 * 60000 / 25)
+        self.assertAlmostEqual(place.bandwidth, 4 * 28 / 25)
 
 
 if __name__ == "__main__":
