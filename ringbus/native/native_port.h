@@ -50,7 +50,7 @@ class NativePort {
   /// From now on it only forwards, as a resource that has stopped does.
   void stop() { logic_.stop(); }
   /// From now on another resource is known to have stopped. Before the first step.
-  void exclude(ResourceId stopped) { resource_.exclude(stopped); }
+  void exclude(ResourceId stopped);
   /// Counts its steps, but not when it has stopped. Any thread may call.
   // Relaxed: the watcher only wants to see it change.
   std::uint64_t beats() const { return beats_.load(std::memory_order_relaxed); }
@@ -143,6 +143,7 @@ class NativePort {
   std::optional<ResourceFault> fault_;
   std::optional<std::uint64_t> stops_after_;  // rays_done_
   std::uint64_t rays_done_ = 0;  // completed here; taken in, if it collects for others, where none completes
+  bool closed_ = false;          // the packet process that collects its rays has stopped, so it gets none
   std::atomic<std::uint64_t> beats_{0}, visits_{0};
   std::uint64_t visits_now_ = 0;  // published once a step
   std::vector<InPort> in_ports_;

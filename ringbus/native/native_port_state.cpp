@@ -14,8 +14,15 @@ bool NativePort::drained() const {
       std::all_of(in_ports_.begin(), in_ports_.end(), [](const InPort& in) { return in.waiting.empty(); });
   if (packets_out() > 0 || !egress_empty || !ends_empty) return false;
   // A resource that has stopped took nothing in of what came back to it, and may have stopped when no ray needed that.
-  return logic_.stopped() || (logic_.at_rest() && rounds_.empty() &&
-                              machine_.control.free_slots(resource_.id()) == machine_.control.slots(resource_.id()));
+  if (logic_.stopped()) return true;
+  const bool slots_free = machine_.control.free_slots(resource_.id()) == machine_.control.slots(resource_.id());
+  return logic_.at_rest() && rounds_.empty() && (slots_free || closed_);
+}
+
+void NativePort::exclude(ResourceId stopped) {
+  resource_.exclude(stopped);
+  const std::vector<std::uint32_t>& managers = machine_.topology.manager_of();
+  closed_ = !managers.empty() && managers[resource_.id().value] == stopped.value;
 }
 
 std::string NativePort::describe() const {

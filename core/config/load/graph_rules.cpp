@@ -100,9 +100,6 @@ void check_faulty_manager(const Config& config, const RuleBreach& breach) {
   const std::string resources = fmt::format("a resource from 0 to {}", ray_owners(config.topology) - 1);
   if (is_process && fault.kind == Kind::kSlow)
     refuse(number, "a packet_process that serves resources has no testers that could be slow", resources);
-  else if (is_process && fault.kind == Kind::kStop && config.engine.kind == EngineKind::kNative)
-    refuse(number, "in the native engine a packet_process that serves resources pauses, and does not stop yet",
-           resources);
   else if (is_process && fault.kind == Kind::kStop && managers_of(config.topology) == 1)
     refuse(number, "when a packet_process stops, another one has to continue, and there is no other", resources);
   else if (!is_process && fault.kind == Kind::kStop && ray_owners(config.topology) == 1)

@@ -140,9 +140,8 @@ TEST(PacketProcessConfig, FaultsHaveAPlace) {
       "scene: {builtin: cornell}\nengine: {kind: native}\ntopology: {shape: graph, nodes: [{name: r, count: 2}, {name: "
       "p, kind: packet_process, serves: 'r[*]'}], links: [{from: 'r[*]', to: p, both: true}]}\n";
   EXPECT_THAT(texts(issues_of(native + fault("stop", 2))),
-              ElementsAre(HasSubstr("faults.resource.number: in the native engine a packet_process that serves "
-                                    "resources pauses, and does not stop yet; expected a resource from 0 to 1, found "
-                                    "2")));
+              ElementsAre(HasSubstr("faults.resource.number: when a packet_process stops, another one has to continue, "
+                                    "and there is no other; expected a resource from 0 to 1, found 2")));
   EXPECT_THAT(texts(issues_of(native + fault("pause", 2))), testing::IsEmpty());
   EXPECT_THAT(
       texts(issues_of("scene: {builtin: cornell}\nengine: {kind: cycle}\ntopology: {shape: graph, nodes: "

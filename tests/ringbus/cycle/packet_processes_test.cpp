@@ -61,6 +61,30 @@ TEST_F(PacketProcesses, AreTheSameMachineInTheNativeEngine) {
   }
 }
 
+TEST_F(PacketProcesses, GoOnNativelyWhenOneStops) {
+  for (const char* number : {"1", "6", "7"})
+    for (const char* after : {"0", "20"}) {
+      SCOPED_TRACE(number);
+      SCOPED_TRACE(after);
+      for (const std::size_t threads : {1u, 3u}) {
+        Cell cell;
+        cell.config =
+            load_config(
+                {"scene: {builtin: cornell}\nengine: {kind: native}\n" + kRays + kNodes + kLinks, "m.yaml"},
+                std::vector<std::string>{"faults.resource.kind=stop", std::string("faults.resource.number=") + number,
+                                         std::string("faults.resource.after_rays=") + after})
+                .config;
+        cell.threads = threads;
+        const Outcome out = run_cell(scene_, cell);
+        EXPECT_EQ(out.fault, "");
+        if (after[0] != '0') continue;
+        EXPECT_GT(out.result.rays_restarted, 0u);
+        for (std::size_t r = 0; r < 6 && number[0] != '1'; ++r)
+          EXPECT_EQ(out.result.resources[r].rays_completed > 0, (r < 3) == (number[0] == '7')) << r;
+      }
+    }
+}
+
 TEST_F(PacketProcesses, APauseOfOneIsFeltNatively) {
   Cell cell;
   cell.config =
