@@ -191,7 +191,10 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
     ports.mm2 = ports.size * cost(c, Cost::kWirePitch) / 1000;
   }
   double places = 0;
-  for (const ringbus::Topology::Wire& wire : topology.wires()) places += static_cast<double>(wire.depth);
+  for (const ringbus::Topology::Wire& wire : topology.wires()) {
+    places += static_cast<double>(wire.depth);
+    if (wire.from.value >= topology.resources()) places += topology.hub_places(wire.from.value - topology.resources());
+  }
   store(AreaPart::kLinkQueues, places * place_bytes(c) / kKiB);
   const TestersConfig::Distributor& distributor = c.testers.distributor;
   if (has_distributor(c))

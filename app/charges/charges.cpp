@@ -8,10 +8,38 @@
 
 #include "core/config/write.h"
 #include "core/system/error.h"
+#include "ringbus/cycle/parcels/parcel_plan.h"
+#include "ringbus/topology/topology.h"
 
 namespace carousel::app {
 
 namespace {
+
+/// A router of a drawing, or a bridge, for which `fits` holds.
+template <class Fits>
+bool any_router(const Config& config, const Fits& fits) {
+  const ringbus::Topology topology(config.topology);
+  for (std::size_t hub = 0; hub < topology.hubs().size(); ++hub) {
+    const ResourceId node(static_cast<std::uint32_t>(topology.resources() + hub));
+    if (topology.hubs()[hub] == ringbus::TopologyPlan::Hub::kRouter && !topology.ports(node).out.empty() &&
+        fits(topology, hub))
+      return true;
+  }
+  return false;
+}
+
+bool has_crossbars(const Config& config) {
+  return any_router(config, [](const ringbus::Topology&, std::size_t) { return true; });
+}
+
+bool has_routers_with_room_for_all(const Config& config) {
+  return any_router(config,
+                    [](const ringbus::Topology& topology, std::size_t hub) { return topology.hub_places(hub) == 0; });
+}
+
+bool has_messages_on_links(const Config& config) {
+  return ringbus::plan_parcels(config.topology, config.memory.line_bytes).any();
+}
 
 constexpr std::array kCharges{
     Charge{"sorted_ids", "IDs of rays that hit are sorted by child and appended to collections in no time",
@@ -53,6 +81,11 @@ constexpr std::array kCharges{
     Charge{"loaded_programs", "programs are in their stores from the start", "", "", "", "programs.simple_cycles"},
     Charge{"moved_vertices", "vertices are moved, and a rebuild sorts primitives along three axes, in no time", "", "",
            "", "frames.builder"},
+    Charge{"crossbars", "the crossbars of routers have no area", "", "", "", "", has_crossbars},
+    Charge{"router_room", "routers have room for all packets there are, without area (topology.nodes: buffers)", "", "",
+           "", "", has_routers_with_room_for_all},
+    Charge{"message_room", "nodes have room for all that links carry beside packets, without area", "", "", "", "",
+           has_messages_on_links},
 };
 
 /// The value of a key as `--set` takes it; empty if the configuration has none.
@@ -84,6 +117,7 @@ bool has_one_of(const LocatedConfig& located, const nlohmann::ordered_json& json
 bool makes_use(const Charge& charge, const LocatedConfig& located, const nlohmann::ordered_json& json,
                const SceneFacts& scene) {
   const std::string_view key = charge.key;
+  if (charge.has != nullptr) return charge.has(located.config);
   if (key.empty()) return has_one_of(located, json, scene, charge.where);
   return value_of(json, key) == charge.free && in_use(located.config, scene, key);
 }

@@ -19,6 +19,7 @@ struct Charge {
   /// Without a key: the machines that have it are those with one of these settings, such as "a.b=c d=e"; a key
   /// without a value: those in which it has an effect.
   const char* where = "";
+  bool (*has)(const Config&) = nullptr;  ///< in place of `where`: tells whether a machine has it
 };
 
 /// The one list of them.

@@ -77,6 +77,42 @@ TEST_F(Charges, WithoutAKeyAreOfTheMachinesThatMeetThem) {
   EXPECT_FALSE(lists_in("moved_vertices", ""));
 }
 
+// Of a shape and of its drawing they are the same.
+TEST_F(Charges, OfRoutersAreTheirCrossbarsAndTheRoomThatNothingBounds) {
+  const std::string drawn = "topology={shape: graph, nodes: [{name: r, count: 4}, {name: x, kind: router, buffers: ";
+  const std::string links = "}], links: [{from: 'r[*]', to: x, both: true}]}";
+  const auto expect = [&](const std::vector<std::string>& sets, bool crossbars, bool room, bool messages) {
+    const Json all = report(kMachine, sets);
+    EXPECT_EQ(lists(all, "crossbars"), crossbars) << testing::PrintToString(sets);
+    EXPECT_EQ(lists(all, "router_room"), room) << testing::PrintToString(sets);
+    EXPECT_EQ(lists(all, "message_room"), messages) << testing::PrintToString(sets);
+  };
+  expect({}, false, false, false);
+  expect({"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{ring: 'r[*]'}]}"}, false, false, false);
+  expect({"topology.shape=bus"}, false, false, false);
+  expect({"topology.shape=hierarchical", "topology.groups=2"}, true, true, false);
+  expect({drawn + "auto" + links}, true, true, false);
+  expect({drawn + "5" + links}, true, false, false);
+  expect({"topology={shape: graph, nodes: [{name: r, count: 4}, {name: s, kind: shading}], links: [{ring: 'r[*]'}, "
+          "{from: 'r[*]', to: s, both: true, carries: [new_rays]}]}"},
+         false, false, true);
+}
+
+// The places of a router, as many for each link that leaves it, have the area of places at the ends of links.
+TEST_F(Charges, BuffersOfRoutersHaveArea) {
+  const auto area = [&](const std::string& buffers, const std::string& depth) {
+    return report(kMachine, {"energy.profile=n7",
+                             "topology={shape: graph, nodes: [{name: r, count: 4}, {name: x, kind: "
+                             "router, buffers: " +
+                                 buffers + "}], links: [{from: 'r[*]', to: x}, {from: x, to: 'r[*]', depth: " + depth +
+                                 "}]}"})["area"]["parts"]["link_queues"]["mm2"]
+        .get<double>();
+  };
+  const double bare = area("auto", "8");
+  EXPECT_NEAR(area("8", "8") - bare, area("auto", "16") - bare, 1e-12);
+  EXPECT_GT(area("8", "8"), bare);
+}
+
 TEST_F(Charges, OfSeveralFramesAreMovedVertices) {
   const Json frames = report(
       "scene: {builtin: instances, instances: 20, time: 0}\nimage: {width: 12, height: 8, samples: 1, max_depth: 1}\n"
