@@ -1,5 +1,10 @@
 #include "app/build_report/cycle_sections.h"
 
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
 #include <fmt/format.h>
 
 #include "app/build_report/memory_report.h"
@@ -8,6 +13,7 @@
 #include "core/config/shader_programs.h"
 #include "report/csv/ray_csv_columns.h"
 #include "report/text/ratio.h"
+#include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/topology/topology.h"
 #include "ringbus/verdict/steady_state.h"
@@ -127,6 +133,24 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
 
 }  // namespace
 
+namespace {
+
+std::vector<report::WorkerPool> pools(const ringbus::cycle::CycleResult& c, const Config& config) {
+  const ringbus::ParcelPlan plan = ringbus::plan_parcels(config.topology, config.memory.line_bytes);
+  const std::vector<std::int64_t> workers = pool_workers(config);
+  std::vector<report::WorkerPool> out;
+  for (std::size_t i = 0; i < c.pools.size(); ++i) {
+    report::WorkerPool& pool = out.emplace_back(report::WorkerPool{plan.graph.nodes[plan.parts.pools[i]].name});
+    pool.resources = static_cast<std::uint64_t>(std::ranges::count(plan.parts.pool_of, i));
+    pool.workers = static_cast<std::uint64_t>(workers[i]);
+    pool.shaded = c.pools[i].shaded;
+    pool.utilisation = ratio(c.pools[i].busy, c.cycles * pool.workers);
+  }
+  return out;
+}
+
+}  // namespace
+
 void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const Config& config,
                 const accel::Accel& accel) {
   r.engine.cycles = c.cycles;
@@ -187,6 +211,7 @@ void add_cycles(report::Report& r, const ringbus::cycle::CycleResult& c, const C
                          ratio(of.runs, of.vectors)};
   if (config.shading.program.any()) r.shading.programs = shader_programs(c.shading, config);
   r.shading.utilisation = ratio(c.shading.busy, c.cycles * static_cast<std::uint64_t>(shader_workers(config)));
+  if (c.pools.size() > 1) r.shading.pools = pools(c, config);
 }
 
 }  // namespace carousel::app

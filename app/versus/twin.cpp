@@ -124,6 +124,8 @@ Config plain_twin(const Config& c) {
   t.topology.shape = TopologyShape::kIndependent;
   t.topology.link = c.topology.link;
   t.topology.overrides = overrides_of(c);
+  if (const DrawnPools drawn = drawn_pools(c.topology); drawn.pools > 0 && drawn.silent == 0)
+    t.shading.workers = drawn.workers;
   t.clocks.noc.reset();
   t.clocks.others.clear();
   t.testers = in_warps(c.testers, own_testers(c), c.rays.slots_per_resource);
@@ -162,6 +164,7 @@ void draw_twin(const LocatedConfig& located, Twin& twin) {
   }
   Config drawn = twin.plain;
   drawn.topology = without_packets_drawn(located.config);
+  drawn.shading.workers = located.config.shading.workers;
   drawn.memory.shared_by = located.config.memory.shared_by;
   if (const std::vector<ConfigIssue> issues = validate_config(drawn, located.positions); !issues.empty()) {
     twin.drawing = fmt::format("{}{}: {}", not_drawn, issues.front().key_path, issues.front().message);

@@ -97,10 +97,25 @@ inline std::int64_t own_testers(const Config& c) {
   return has_distributor(c) ? c.testers.distributor.testers : 1;
 }
 
-/// The number of shader workers that `shading.workers` stands for.
+/// The number of shader workers that `shading.workers` stands for, or of all drawn pools, if each names its own.
 inline std::int64_t shader_workers(const Config& c) {
+  if (const DrawnPools drawn = drawn_pools(c.topology); drawn.pools > 0 && drawn.silent == 0) return drawn.workers;
   return c.shading.workers.value_or(
       c.engine.kind == EngineKind::kCycle ? std::min<std::int64_t>(256, 2 * ray_owners(c.topology)) : 2);
+}
+
+/// The workers of each pool: in the order of the drawing, or of the one that there is. Those without a number share
+/// what the others leave, and the first ones have one more where it does not come out even.
+inline std::vector<std::int64_t> pool_workers(const Config& c) {
+  const DrawnPools drawn = drawn_pools(c.topology);
+  const std::int64_t left = shader_workers(c) - drawn.workers;
+  if (drawn.pools == 0) return {left};
+  std::vector<std::int64_t> out;
+  std::int64_t silent = 0;
+  for (const GraphNode& node : c.topology.nodes)
+    for (std::int64_t i = 0; node.kind == GraphNodeKind::kShading && i < node.count.value_or(1); ++i)
+      out.push_back(node.workers ? *node.workers : left / drawn.silent + (silent++ < left % drawn.silent ? 1 : 0));
+  return out;
 }
 
 namespace config {

@@ -98,6 +98,15 @@ struct ShadingCounts {
   ShadeVectorCounts vectors;
   ShadeProgramCounts programs;
   ShadeDataCounts data;
+  ShadingCounts& operator+=(const ShadingCounts& o) {
+    busy += o.busy;
+    products += o.products;
+    lookups += o.lookups;
+    vectors += o.vectors;
+    programs += o.programs;
+    data += o.data;
+    return *this;
+  }
   friend bool operator==(const ShadingCounts&, const ShadingCounts&) = default;
 };
 

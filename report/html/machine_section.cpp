@@ -73,6 +73,10 @@ Html machine_section(const Json& report, const Json& schema) {
     tables += rank_table("ranks", "Ranks", report, schema);
     tables += rank_table("rank_links", "Messages between ranks", report, schema);
   }
+  if (const Json* pools = find(report, "shading.pools"))
+    tables += table_of("shading-pools", "Pools of shader workers", *pools,
+                       schema_at(schema, "properties.shading.properties.pools.items"))
+                  .html();
   if (links && !links->empty()) {
     Table table = table_of("links", "Links", *links, *find(schema, "properties.links.items"), {"utilisation"});
     double carried = 0;

@@ -160,6 +160,22 @@ void describe(V& v, const ShaderPrograms& r) {
   v.section("data", r.data, "data caches and TLBs of the workers, with shading.data_cache or shading.translation");
 }
 
+/// One of several pools of shader workers that a graph draws.
+struct WorkerPool {
+  std::string name;
+  std::uint64_t resources = 0, workers = 0, shaded = 0;
+  double utilisation = 0;
+};
+
+template <class V>
+void describe(V& v, const WorkerPool& r) {
+  v.field("name", r.name, "", "its node in topology.nodes");
+  v.field("resources", r.resources, "resources", "resources whose rays it shades");
+  v.field("workers", r.workers, "workers", "its workers");
+  v.field("shaded", r.shaded, "rays", "completed rays that it shaded");
+  v.field("utilisation", r.utilisation, "fraction", "as that of all workers");
+}
+
 struct Shading {
   std::uint64_t workers = 0, shaded = 0, saturated = 0;
   std::optional<double> utilisation{};
@@ -172,6 +188,7 @@ struct Shading {
   std::optional<ShadeVectors> vectors{};
   std::optional<ShaderPrograms> programs{};
   std::optional<EffectsProof> proof{};
+  std::optional<std::vector<WorkerPool>> pools{};
 };
 
 template <class V>
@@ -185,6 +202,8 @@ void describe(V& v, const Shading& r) {
   v.field("products", r.products, "products",
           "products of the surfaces' effects, beyond those of plain surfaces, without shading.program (cycle)");
   v.field("lookups", r.lookups, "lookups", "filtered texture lookups at surfaces, without shading.program (cycle)");
+  v.section("pools", r.pools,
+            "the pools of workers, where several are drawn; they add up to the numbers above (cycle)");
   v.section("vectors", r.vectors, "vectors of the workers, with shading.lanes (cycle)");
   v.section("programs", r.programs, "the programs of the workers, with shading.program (cycle)");
   v.section("effects", r.effects, "every effect of light");

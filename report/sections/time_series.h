@@ -12,7 +12,8 @@ struct SeriesRow {
 
 template <class V>
 void describe(V& v, const SeriesRow& r) {
-  v.field("part", r.part, "", "machine, resource N, or link N as in links; rows of the machine come first");
+  v.field("part", r.part, "",
+          "machine, resource N, link N as in links, or pool N as in shading.pools; rows of the machine come first");
   v.field("quantity", r.quantity, "", "what is counted, or how full or busy the part is");
   v.field("unit", r.unit, "", "rays, packets, bytes, entries, workers, visits, J or share");
   v.field("kind", r.kind, "", "sum: the amount within a sample; mean: the mean over the time of a sample");

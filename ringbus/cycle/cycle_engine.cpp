@@ -139,12 +139,13 @@ class CycleRun {
     RunResult out;
     out.rays_emitted = machine_.shading().emitted();
     out.rays_completed = machine_.shading().completed();
-    out.slots_used = machine_.shared().control.slots_used();
-    out.slot_waits = machine_.shared().control.slot_waits();
+    out.slots_used = machine_.shared().slots_used();
+    out.slot_waits = machine_.shared().slot_waits();
     CycleResult& c = out.cycle.emplace();
     c.cycles = end;
     c.shading = machine_.shading().counts();
     c.residence = machine_.shading().residence();
+    for (const auto& pool : machine_.shading().pools()) c.pools.push_back({pool->completed(), pool->busy()});
     if (const RayTimes* times = machine_.ray_times(); times != nullptr && complete) {
       c.ray_times = times->rows();
       if (kChecked) check_ray_times(*c.ray_times, c.residence.sum());

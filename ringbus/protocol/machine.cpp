@@ -1,5 +1,7 @@
 #include "ringbus/protocol/machine.h"
 
+#include <algorithm>
+
 #include "core/config/own_sections.h"
 #include "ringbus/protocol/packet_pool.h"
 #include "ringbus/resource/resource.h"
@@ -47,6 +49,29 @@ Machine::Machine(const Config& config, const accel::Accel& a, float scene_size,
       control(control_settings(config, accel, scene_size, topology, share), stores) {
   if (config.rays.query.nearest == 0) return;
   for (const auto& store : stores) store->find_nearest(config.rays.query, accel);
+}
+
+void Machine::divide_control(const Config& config, float scene_size, const std::vector<std::size_t>& of) {
+  pool_of = of;
+  RayControlSettings settings = control_settings(config, accel, scene_size, topology, share);
+  for (std::size_t pool = 0; pool <= *std::ranges::max_element(of); ++pool) {
+    settings.own.clear();
+    for (std::uint32_t r = 0; r < of.size(); ++r)
+      if (of[r] == pool) settings.own.push_back(ResourceId(r));
+    pools.push_back(std::make_unique<RayControl>(settings, stores));
+  }
+}
+
+std::uint64_t Machine::slots_used() const {
+  std::uint64_t sum = control.slots_used();
+  for (const auto& pool : pools) sum += pool->slots_used();
+  return sum;
+}
+
+std::uint64_t Machine::slot_waits() const {
+  std::uint64_t sum = control.slot_waits();
+  for (const auto& pool : pools) sum += pool->slot_waits();
+  return sum;
 }
 
 std::optional<NearestResult> Machine::nearest() const {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -38,6 +39,16 @@ struct Machine {
     return PacketId(owner.value * static_cast<std::uint32_t>(topology.directions()) * packets_per_direction);
   }
 
+  /// Several pools of shader workers place rays, each those of its resources, in place of `control`: `pool_of` by
+  /// resource. Before the first ray.
+  void divide_control(const Config& config, float scene_size, const std::vector<std::size_t>& pool_of);
+  /// What places the rays of a resource.
+  const RayControl& control_of(ResourceId resource) const {
+    return pools.empty() ? control : *pools[pool_of[resource.value]];
+  }
+  std::uint64_t slots_used() const;
+  std::uint64_t slot_waits() const;
+
   /// What rays that look for several hits have found and cost, over all resources; absent if none does.
   std::optional<NearestResult> nearest() const;
 
@@ -53,6 +64,8 @@ struct Machine {
   std::vector<std::vector<Packet>> answers;       ///< by resource, then packet
   std::vector<std::unique_ptr<RayStore>> stores;  ///< by resource
   RayControl control;
+  std::vector<std::unique_ptr<RayControl>> pools;  ///< those of several pools of workers, in place of `control`
+  std::vector<std::size_t> pool_of;                ///< likewise; by resource
 };
 
 }  // namespace carousel::ringbus

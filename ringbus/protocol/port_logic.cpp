@@ -5,10 +5,10 @@
 namespace carousel::ringbus {
 
 std::string PortLogic::describe() const {
-  std::string text =
-      fmt::format("resource {}: {} of {} slots free, {} collections with {} memberships, {} packets out", here().value,
-                  machine_.control.free_slots(here()), resource_.rays().slots(), resource_.collections().collections(),
-                  resource_.collections().memberships(), resource_.packets_in_flight());
+  std::string text = fmt::format("resource {}: {} of {} slots free, {} collections with {} memberships, {} packets out",
+                                 here().value, machine_.control_of(here()).free_slots(here()), resource_.rays().slots(),
+                                 resource_.collections().collections(), resource_.collections().memberships(),
+                                 resource_.packets_in_flight());
   if (!admission.empty()) text += fmt::format(", {} new rays wait for storage", admission.rays());
   return text;
 }

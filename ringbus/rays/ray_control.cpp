@@ -14,7 +14,8 @@ RayControlSettings ray_control_settings(const RaysConfig& rays, const Collection
                                         const PacketsConfig& packets, const BundlesConfig& bundles,
                                         std::int32_t initial_tests, float scene_size) {
   const bool local = collections.home == Home::kLocal;
-  return {rays.placement, local, static_cast<std::size_t>(packets.rays), initial_tests, bundles, scene_size, {}, {}};
+  return {
+      rays.placement, local, static_cast<std::size_t>(packets.rays), initial_tests, bundles, scene_size, {}, {}, {}};
 }
 
 RayControl::RayControl(const RayControlSettings& settings, std::span<const std::unique_ptr<RayStore>> stores)
@@ -23,18 +24,19 @@ RayControl::RayControl(const RayControlSettings& settings, std::span<const std::
       rays_travel_(placement_ == Placement::kFirstTaker || placement_ == Placement::kAddressed),
       local_(settings.local),
       share_(settings.share),
-      resources_(static_cast<std::uint32_t>(stores.size())),
+      own_(settings.own),
       group_rays_(settings.group_rays),
       initial_tests_(settings.initial_tests),
       stores_(stores),
       slots_(std::make_unique<SlotList[]>(stores.size())),
       inboxes_(std::make_unique<Inbox[]>(stores.size())) {
+  for (std::uint32_t r = 0; settings.own.empty() && r < resources(); ++r) own_.push_back(ResourceId(r));
   free_all();
-  owners_.resize(settings.manager_of.empty() ? 1 : resources_);
-  for (std::uint32_t r = 0; r < resources_; ++r) {
-    const ResourceId manager(settings.manager_of.empty() ? 0 : settings.manager_of[r]);
-    if (settings.manager_of.empty() || manager.value != r)
-      owners_[manager.value].push_back(ResourceId(r));
+  owners_.resize(settings.manager_of.empty() ? 1 : resources());
+  for (const ResourceId r : own_) {
+    const ResourceId manager(settings.manager_of.empty() ? 0 : settings.manager_of[r.value]);
+    if (settings.manager_of.empty() || manager != r)
+      owners_[manager.value].push_back(r);
     else
       managers_.push_back(manager);
   }
@@ -49,18 +51,19 @@ std::size_t RayControl::enough_slots() const {
   // It must not be more than the packet process with the fewest slots has, or that one would get no rays.
   for (const ResourceId manager : managers_)
     if (const std::size_t own = free_slots(owners_[manager.value]); own > 0) total = std::min(total, own);
-  return std::max<std::size_t>(1, (local_ ? total / resources_issuing() : total) / 4);
+  const std::size_t issuing = share_.alone() ? own_.size() : share_.arc_size();
+  return std::max<std::size_t>(1, (local_ ? total / issuing : total) / 4);
 }
 
 void RayControl::free_all() {
-  for (std::uint32_t r = 0; r < resources_; ++r) {
-    SlotList& list = slots_[r];
+  for (const ResourceId r : own_) {
+    SlotList& list = slots_[r.value];
+    const RayStore& store = *stores_[r.value];
     list.free.clear();
     list.free_bundles.clear();
-    const auto [begin, end] = own_slots(ResourceId(r));
+    const auto [begin, end] = own_slots(r);
     for (std::uint32_t slot = end; slot-- > begin;) list.free.push_back(slot);
-    for (std::uint32_t bundle = stores_[r]->room().loaded; bundle-- > 0;)
-      list.free_bundles.push_back(stores_[r]->slots() + bundle);
+    for (std::uint32_t bundle = store.room().loaded; bundle-- > 0;) list.free_bundles.push_back(store.slots() + bundle);
     list.count = list.free.size();
   }
 }
@@ -74,7 +77,7 @@ std::pair<std::uint32_t, std::uint32_t> RayControl::own_slots(ResourceId resourc
 
 void RayControl::discard() {
   free_all();
-  for (std::uint32_t r = 0; r < resources_; ++r) {
+  for (std::uint32_t r = 0; r < resources(); ++r) {
     stores_[r]->discard();
     std::vector<RayGroup> forgotten;
     collect(ResourceId(r), forgotten);
@@ -103,7 +106,7 @@ std::size_t RayControl::exclude(ResourceId resource) {
 
 std::size_t RayControl::free_slots() const {
   std::size_t total = 0;
-  for (std::uint32_t r = 0; r < resources_; ++r) total += free_slots(ResourceId(r));
+  for (std::uint32_t r = 0; r < resources(); ++r) total += free_slots(ResourceId(r));
   return total;
 }
 
@@ -136,21 +139,21 @@ ResourceId RayControl::emptiest_manager() {
 /// The resource that a plugin's rule chooses, whether it has room or not.
 ResourceId RayControl::chosen(const RayRequest& ray) {
   free_now_.clear();
-  for (std::uint32_t r = 0; r < resources_; ++r) free_now_.push_back(free_slots(ResourceId(r)));
+  for (std::uint32_t r = 0; r < resources(); ++r) free_now_.push_back(free_slots(ResourceId(r)));
   const std::uint32_t resource = rule_->choose(ray, {free_now_, slots_used_.load(std::memory_order_relaxed)});
-  if (resource >= resources_)
+  if (resource >= resources())
     throw SimulationError(
-        fmt::format("rays.placement: {} chose resource {} of {}", enum_name(placement_), resource, resources_));
+        fmt::format("rays.placement: {} chose resource {} of {}", enum_name(placement_), resource, resources()));
   return ResourceId(resource);
 }
 
 std::size_t RayControl::place_by_rule(std::span<const RayRequest> rays, std::vector<RayId>& ids) {
   std::size_t placed = 0;
-  for (std::uint32_t refused = 0; placed < rays.size() && refused < resources_; ++placed) {
+  for (std::uint32_t refused = 0; placed < rays.size() && refused < resources(); ++placed) {
     const std::uint32_t first = chosen(rays[placed]).value;
-    for (refused = 0; refused < resources_; ++refused)
-      if (load_some(ResourceId((first + refused) % resources_), rays.subspan(placed, 1), ids) == 1) break;
-    if (refused == resources_) break;
+    for (refused = 0; refused < resources(); ++refused)
+      if (load_some(ResourceId((first + refused) % resources()), rays.subspan(placed, 1), ids) == 1) break;
+    if (refused == resources()) break;
   }
   return placed;
 }
@@ -228,7 +231,7 @@ std::size_t RayControl::place_spread(std::span<const RayRequest> rays, const std
 }
 
 void RayControl::queue_groups(QueueKind kind, std::size_t places) {
-  for (std::uint32_t r = 0; r < resources_; ++r)
+  for (std::uint32_t r = 0; r < resources(); ++r)
     if (share_.here(ResourceId(r))) inboxes_[r].queue = std::make_unique<PooledQueue<RayGroup>>(kind, places);
 }
 
@@ -260,7 +263,7 @@ bool RayControl::deliver(ResourceId issuer, RayGroup& group) {
 
 QueueUse RayControl::groups_sent() const {
   QueueUse sum;
-  for (std::uint32_t r = 0; r < resources_; ++r)
+  for (std::uint32_t r = 0; r < resources(); ++r)
     if (inboxes_[r].queue) sum += inboxes_[r].queue->use();
   return sum;
 }
@@ -279,8 +282,8 @@ std::size_t RayControl::place(std::span<const RayRequest> rays) {
       if (!may_send(issuer)) break;
       group.rays.assign(next.begin(), next.end());
       for (std::size_t i = 0; placement_ == Placement::kAddressed && i < next.size(); ++i) {
-        const std::size_t step = local_ ? 0 : i * resources_ / next.size();
-        const ResourceId address(static_cast<std::uint32_t>((issuer.value + step) % resources_));
+        const std::size_t step = local_ ? 0 : i * resources() / next.size();
+        const ResourceId address(static_cast<std::uint32_t>((issuer.value + step) % resources()));
         group.addresses.push_back(address == excluded_ ? issuer : address);
       }
     } else {

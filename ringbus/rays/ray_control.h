@@ -36,6 +36,7 @@ struct RayControlSettings {
   float scene_size = 1;                     ///< scale of the distances between the origins of a bundle
   RankShare share{};                        ///< the part of the machine that this process plays
   std::vector<std::uint32_t> manager_of{};  ///< by resource, as the plan of the topology
+  std::vector<ResourceId> own{};            ///< the resources whose rays it places, in order; empty: all
 };
 
 RayControlSettings ray_control_settings(const RaysConfig& rays, const CollectionsConfig& collections,
@@ -50,7 +51,8 @@ RayControlSettings ray_control_settings(const RaysConfig& rays, const Collection
 /// rays as a packet carries IDs, and each bundle has one owner. With first_taker and addressed placement the rays
 /// travel instead, and resources ask for slots as packets pass. With several ranks a rank's rays are issued by
 /// resources of its own arc, and go to slots that it leases from all resources. Where packet processes serve resources,
-/// a group goes to the one whose resources have most room, and its rays to these. Any thread may call.
+/// a group goes to the one whose resources have most room, and its rays to these. With several pools of shader workers
+/// each has one, for its own resources. Any thread may call.
 class RayControl {
  public:
   /// `stores` by resource.
@@ -124,7 +126,7 @@ class RayControl {
 
   void free_all();
   std::pair<std::uint32_t, std::uint32_t> own_slots(ResourceId resource) const;
-  std::uint32_t resources_issuing() const { return share_.alone() ? resources_ : share_.arc_size(); }
+  std::uint32_t resources() const { return static_cast<std::uint32_t>(stores_.size()); }
   void lease_some(ResourceId resource, std::span<const RayRequest> rays, std::vector<RayId>& ids);
   std::size_t place(std::span<const RayRequest> rays);
   bool place_all_waiting();
@@ -137,8 +139,8 @@ class RayControl {
   bool may_send(ResourceId resource);
   void send(ResourceId resource, RayGroup&& group);
   ResourceId next_resource() {
-    if (excluded_ == ResourceId(turn_ % resources_)) ++turn_;
-    return ResourceId(turn_++ % resources_);
+    if (excluded_ == own_[turn_ % own_.size()]) ++turn_;
+    return own_[turn_++ % own_.size()];
   }
   /// The next in turn among the resources that this rank plays.
   ResourceId next_issuer() {
@@ -164,7 +166,7 @@ class RayControl {
   bool rays_travel_, local_;
   RankShare share_;
   RemotePlacing* remote_ = nullptr;
-  std::uint32_t resources_;
+  std::vector<ResourceId> own_;  // the resources whose rays it places
   std::size_t group_rays_, enough_slots_;
   std::int32_t initial_tests_;
   std::span<const std::unique_ptr<RayStore>> stores_;

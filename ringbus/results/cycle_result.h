@@ -122,6 +122,13 @@ struct IdsAtOnce {
   friend bool operator==(const IdsAtOnce&, const IdsAtOnce&) = default;
 };
 
+/// A pool of shader workers.
+struct PoolUse {
+  std::uint64_t shaded = 0;  ///< rays
+  Cycle busy = 0;            ///< worker-cycles, as ShadingCounts has them
+  friend bool operator==(const PoolUse&, const PoolUse&) = default;
+};
+
 struct CycleResult {
   /// From cycle 0 to the last in which a resource, ray control or shading did anything.
   Cycle cycles = 0;
@@ -147,6 +154,7 @@ struct CycleResult {
   std::uint64_t structure_bytes = 0;       ///< of the whole structure in the machine's memory
   std::optional<DramUse> dram;             ///< use of DRAM with banks
   ShadingCounts shading;
+  std::vector<PoolUse> pools;  ///< its parts, in the order of the drawing
   std::uint64_t hops = 0;
   Log2Histogram residence;                           ///< times of rays from their slot until shading has their hit
   std::optional<std::vector<RayTimeRow>> ray_times;  ///< with RunOptions::ray_times, of a complete run

@@ -105,7 +105,10 @@ struct GraphNode {
   std::int64_t latency_cycles = 0;
   std::optional<std::int64_t> buffers;
   Forward forward = Forward::kHead;
-  std::string serves;  ///< empty: of a cache, all resources; of a packet_process, its own cells or testers
+  /// Empty: of a cache, all resources; of a packet_process, its own cells or testers; of shading, those to which it is
+  /// nearest.
+  std::string serves;
+  std::optional<std::int64_t> workers;  ///< of shading; absent: a share of those that no other pool names
   std::optional<std::int64_t> interleave_bytes;
   std::int64_t credit_cycles = 0, claim_cycles = 0;
   GraphPoint at, step;
@@ -172,6 +175,18 @@ inline constexpr IntRange kChannels{1, 64};
 inline constexpr std::int64_t kMaxLanes = 64;
 inline constexpr RealRange kDiePlace{-1000, 1000};
 
+/// A number of one pool of workers, by the key of the whole machine.
+struct PoolKey {
+  std::string_view name;
+  const char* path;
+  IntRange range;
+  const char *unit, *meaning;
+};
+inline constexpr PoolKey kPoolWorkers{
+    "workers", "shading.workers", IntRange{1, 256}, "workers",
+    "The workers of each node of the kind shading. With auto these nodes have equal shares of the workers of "
+    "shading.workers that others do not name, and the first ones the rest."};
+
 template <class V>
 void describe(V& v, GraphWay& c) {
   v.field("along", c.along, "", "The nodes of a way in order, the last of them its destination.");
@@ -200,9 +215,13 @@ void describe(V& v, GraphNode& c) {
       "is room for all packets there are.");
   v.choice("forward", c.forward,
            "A router sends a packet on when its head has come, if the next link is as wide, or the whole packet.");
-  v.field("serves", c.serves, "",
-          "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn. Or "
-          "the resources whose rays a packet_process collects: of a group, each serves an equal run of them.");
+  v.field(
+      "serves", c.serves, "",
+      "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn. Or "
+      "the resources whose rays a packet_process collects, or whose completed rays come to the workers of a node of "
+      "the kind shading: of a group, each serves an equal run of them. Left out at shading, they are those to which "
+      "it is the nearest such node by latency; of several as near, the first takes them.");
+  v.own_key(kPoolWorkers, c.workers).relax("shading", Better::kTwice);
   v.field_or_auto("interleave_bytes", c.interleave_bytes, IntRange{16, 1 << 20}, "bytes",
                   "The bytes that a cache of a group, or a memory, holds before the next one's turn; auto is a line.");
   v.field("credit_cycles", c.credit_cycles, IntRange{0, 1'000'000}, "cycles",

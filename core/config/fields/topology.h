@@ -182,6 +182,23 @@ inline std::int64_t ray_owners(const TopologyConfig& c) {
   return c.resources - managers_of(c);
 }
 
+/// The pools of shader workers that a graph draws.
+struct DrawnPools {
+  std::int64_t pools = 0;    ///< nodes of the kind shading
+  std::int64_t silent = 0;   ///< of these, those that name no number of workers
+  std::int64_t workers = 0;  ///< of all others
+};
+inline DrawnPools drawn_pools(const TopologyConfig& c) {
+  DrawnPools out;
+  for (const GraphNode& node : c.nodes) {
+    if (c.shape != TopologyShape::kGraph || node.kind != GraphNodeKind::kShading) continue;
+    const std::int64_t count = node.count.value_or(1);
+    out.pools += count;
+    (node.workers ? out.workers : out.silent) += node.workers.value_or(1) * count;
+  }
+  return out;
+}
+
 /// A bus is the network that packets travel: the shape, or a graph around one.
 inline bool is_bus(const TopologyConfig& c) {
   if (c.shape != TopologyShape::kGraph) return c.shape == TopologyShape::kBus;

@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "core/config/graph/shading_pools.h"
+
 namespace carousel::config {
 
 namespace {
@@ -155,26 +157,34 @@ class PartFinder {
   }
 
   void shading() {
-    const Nodes pools = graph_.of_kind(GraphNodeKind::kShading);
-    if (pools.empty()) {
+    parts_.pools = graph_.of_kind(GraphNodeKind::kShading);
+    if (parts_.pools.empty()) {
       refuse_carrier(Carried::kNewRays, "a node of the kind shading, or links without them");
       return refuse_carrier(Carried::kCompletedRays, "a node of the kind shading, or links without them");
     }
-    parts_.shading = pools.front();
-    const std::size_t entry = graph_.nodes[pools.front()].entry;
-    if (pools.size() > 1)
-      return issue(node_key(graph_.nodes[pools[1]].entry, ".kind"),
-                   fmt::format("all workers are one pool, which is {}; expected one such node, found {}",
-                               name(pools.front()), pools.size()));
     parts_.new_rays = carrier(Carried::kNewRays) != nullptr;
     parts_.completed_rays = carrier(Carried::kCompletedRays) != nullptr;
+    const std::uint32_t first = parts_.pools.front();
     if (!parts_.new_rays && !parts_.completed_rays)
-      issue(node_key(entry, ".kind"),
-            fmt::format("no rays travel to {} or from it; expected links with carries: [new_rays, completed_rays]",
-                        name(pools.front())));
-    const Nodes resources = all_resources();
-    if (parts_.new_rays) one_way(graph_.only(Carried::kNewRays), Carried::kNewRays, pools, resources);
-    if (parts_.completed_rays) one_way(graph_.only(Carried::kCompletedRays), Carried::kCompletedRays, resources, pools);
+      return issue(
+          node_key(graph_.nodes[first].entry, ".kind"),
+          fmt::format("no rays travel to {} or from it; expected links with carries: [new_rays, completed_rays]",
+                      name(first)));
+    if (!find_pools(graph_, parts_, issues_)) return;
+    const Graph new_rays = graph_.only(Carried::kNewRays), completed = graph_.only(Carried::kCompletedRays);
+    for (std::size_t pool = 0; pool < parts_.pools.size(); ++pool) {
+      Nodes resources;
+      for (const std::uint32_t r : all_resources())
+        if (parts_.pool_of[r] == pool) resources.push_back(r);
+      const Nodes here{parts_.pools[pool]};
+      if (resources.empty())
+        return issue(node_key(graph_.nodes[here[0]].entry, ".kind"),
+                     fmt::format("no rays come to {}, as other pools are nearer to all resources, or serve them; "
+                                 "expected `serves`, or fewer nodes of the kind shading",
+                                 name(here[0])));
+      if (parts_.new_rays && !one_way(new_rays, Carried::kNewRays, here, resources)) return;
+      if (parts_.completed_rays && !one_way(completed, Carried::kCompletedRays, resources, here)) return;
+    }
   }
 
   bool there_and_back(const Graph& links, Carried what, const Nodes& from, const Nodes& to) {

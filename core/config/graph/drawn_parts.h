@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "core/config/graph/graph.h"
@@ -22,10 +21,13 @@ struct DrawnParts {
   std::vector<std::size_t> caches_of;   ///< by resource: the group that it asks; empty without caches
   std::vector<std::uint32_t> spilling;  ///< packet processes that a cache serves, to which their collections may spill
   Banks memories;                       ///< no nodes: one memory, beside the links
-  std::optional<std::uint32_t> shading;
+  std::vector<std::uint32_t> pools;     ///< of shader workers, in the order of the drawing
+  std::vector<std::size_t> pool_of;     ///< by resource: where its completed rays go; empty without pools
   bool new_rays = false, completed_rays = false;  ///< they travel over links
 
   std::size_t cache_nodes() const;
+  /// The node of a resource's pool.
+  std::uint32_t pool_node(std::uint32_t resource) const { return pools[pool_of[resource]]; }
 };
 
 /// Finds the parts; what is wrong with them and with the ways to them is appended to `issues`. `line_bytes`:

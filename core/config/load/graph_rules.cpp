@@ -38,10 +38,15 @@ void check_node(const GraphNode& node, const std::string& key, const RuleBreach&
   }
   if (bus && node.count.value_or(1) > 1)
     breach(key + ".count", fmt::format("all packets cross the same bus; expected one, found {}", *node.count));
-  if (!node.serves.empty() && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kPacketProcess)
-    breach(key + ".serves", fmt::format("resources ask caches, and packet processes collect their rays; expected none "
-                                        "at a {}, found '{}'",
+  const bool shading = node.kind == GraphNodeKind::kShading;
+  if (!node.serves.empty() && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kPacketProcess &&
+      !shading)
+    breach(key + ".serves", fmt::format("resources ask caches, packet processes collect their rays, and pools of "
+                                        "workers shade them; expected none at a {}, found '{}'",
                                         enum_name(node.kind), node.serves));
+  if (node.workers && !shading)
+    breach(key + ".workers", fmt::format("only a node of the kind shading has workers; expected none at a {}, found {}",
+                                         enum_name(node.kind), *node.workers));
   if (node.interleave_bytes && node.kind != GraphNodeKind::kCache && node.kind != GraphNodeKind::kMemory)
     breach(key + ".interleave_bytes", fmt::format("caches and memories hold lines; expected auto at a {}, found {}",
                                                   enum_name(node.kind), *node.interleave_bytes));
@@ -280,14 +285,16 @@ void check_graph(const Config& config, const RuleBreach& breach) {
   for (std::size_t i = 0; i < c.nodes.size(); ++i) check_node(c.nodes[i], fmt::format("topology.nodes.{}", i), breach);
   check_places(c.nodes, breach);
   check_packet_processes(config, breach);
+  check_pools(config, breach);
   check_lanes(config, breach);
   for (std::size_t i = 0; i < c.nodes.size() && config.engine.kind == EngineKind::kNative; ++i)
-    if (const GraphNodeKind kind = c.nodes[i].kind;
-        kind != GraphNodeKind::kResource && kind != GraphNodeKind::kRouter && !is_manager(c.nodes[i]))
+    if (const GraphNodeKind kind = c.nodes[i].kind; kind != GraphNodeKind::kResource &&
+                                                    kind != GraphNodeKind::kRouter && kind != GraphNodeKind::kShading &&
+                                                    !is_manager(c.nodes[i]))
       breach(
           fmt::format("topology.nodes.{}.kind", i),
-          fmt::format("the native engine draws resources, routers and packet processes that serve resources; expected "
-                      "these, or engine.kind: cycle; found {}",
+          fmt::format("the native engine draws resources, routers, shading and packet processes that serve resources; "
+                      "expected these, or engine.kind: cycle; found {}",
                       enum_name(kind)));
   const std::int64_t resources = drawn_resources(c);
   if (resources == 0) return breach("topology.nodes", "expected a resource at least, such as {name: r, count: 8}");

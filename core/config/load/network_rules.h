@@ -16,6 +16,9 @@ void check_network(const Config& config, bool force, const RuleBreach& breach);
 /// The rules of a network that is drawn (`topology.shape: graph`).
 void check_graph(const Config& config, const RuleBreach& breach);
 
+/// The rules of pools of shader workers that are drawn.
+void check_pools(const Config& config, const RuleBreach& breach);
+
 /// The rules of rings whose stops have no queues, of the ends of synthetic traffic, and of clocks.
 void check_rings(const Config& config, const RuleBreach& breach);
 

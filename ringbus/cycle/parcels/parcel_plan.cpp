@@ -58,6 +58,24 @@ std::string longest_way(const Graph& graph, const Routes& routes, const Nodes& s
   return text;
 }
 
+/// "pools of workers: s[0] shades the rays of r[0], r[1]; s[1] of r[2]"
+std::string pool_facts(const ParcelPlan& plan) {
+  if (plan.parts.pools.size() < 2) return "";
+  constexpr std::size_t kShown = 8;
+  std::string out;
+  for (const std::uint32_t pool : plan.parts.pools) {
+    out += fmt::format("{}{} {}", out.empty() ? "pools of workers: " : "; ", plan.graph.nodes[pool].name,
+                       out.empty() ? "shades the rays of " : "of ");
+    std::size_t served = 0;
+    for (std::uint32_t r = 0; r < plan.graph.resources; ++r) {
+      if (plan.parts.pool_node(r) != pool) continue;
+      if (served++ < kShown) out += (served > 1 ? ", " : "") + plan.graph.nodes[r].name;
+    }
+    if (served > kShown) out += fmt::format(" and {} more", served - kShown);
+  }
+  return out + "\n";
+}
+
 }  // namespace
 
 std::vector<Graph::Link> ParcelPlan::without_packets() const {
@@ -106,7 +124,8 @@ std::string parcel_facts(const ParcelPlan& plan) {
   const Nodes caches = graph.of_kind(GraphNodeKind::kCache);
   std::string out =
       fmt::format("parts: {} caches, {} memories, {} shading, {} links that carry no packets\n", caches.size(),
-                  plan.parts.memories.nodes.size(), plan.parts.shading ? 1 : 0, plan.without_packets().size());
+                  plan.parts.memories.nodes.size(), plan.parts.pools.size(), plan.without_packets().size());
+  out += pool_facts(plan);
   if (caches.empty()) return out;
   const Graph shapes = graph.only(Carried::kShapes);
   const Routes routes(shapes);

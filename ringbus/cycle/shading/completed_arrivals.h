@@ -15,7 +15,7 @@ namespace carousel::ringbus::cycle {
 /// sent nothing: those that arrive in the present window are kept by time, for the others the earliest time is enough.
 class CompletedArrivals {
  public:
-  /// By resource; keeps a reference.
+  /// By resource, of which those without channels are of other pools; keeps a reference.
   explicit CompletedArrivals(const std::vector<SidePorts>& clients) : clients_(clients) {}
 
   /// Completed rays have been sent, and arrive in cycle `at`.
@@ -25,14 +25,16 @@ class CompletedArrivals {
     window_end_ = end;
     if (beyond_ >= end) return;
     beyond_ = kNever;
-    for (std::uint32_t r = 0; r < clients_.size(); ++r) look_for(r);
+    for (std::uint32_t r = 0; r < clients_.size(); ++r)
+      if (clients_[r].completed != nullptr) look_for(r);
   }
   /// The next arrival, as far as it is known.
   Cycle next() const { return due_.empty() ? beyond_ : due_.top().at; }
   /// The next arrival of all that have been sent.
   Cycle next_of_all() const {
     Cycle first = kNever;
-    for (const SidePorts& client : clients_) first = std::min(first, client.completed->next());
+    for (const SidePorts& client : clients_)
+      if (client.completed != nullptr) first = std::min(first, client.completed->next());
     return first;
   }
   /// Calls `take(resource, message)` for all that have arrived.

@@ -5,9 +5,10 @@
 
 namespace carousel::ringbus::cycle {
 
-RayPlacement::RayPlacement(Machine& machine, const ShadingSettings& settings, const std::vector<SidePorts>& clients,
-                           ShadingRecorder& recorder, Trace& trace)
+RayPlacement::RayPlacement(Machine& machine, RayControl& control, const ShadingSettings& settings,
+                           const std::vector<SidePorts>& clients, ShadingRecorder& recorder, Trace& trace)
     : machine_(machine),
+      control_(control),
       clients_(clients),
       recorder_(recorder),
       trace_(trace),
@@ -17,8 +18,7 @@ RayPlacement::RayPlacement(Machine& machine, const ShadingSettings& settings, co
       ports_(settings.link, clients.size()),
       id_wires_(clients.size(), SideWire(settings.link, control_latency(settings.link))),
       slots_(machine) {
-  if (machine.control.rays_travel())
-    travelling_ = std::make_unique<TravellingGroups>(machine, settings, clients, ports_);
+  if (control.rays_travel()) travelling_ = std::make_unique<TravellingGroups>(machine, settings, clients, ports_);
   const std::size_t open = static_cast<std::size_t>(settings.bundles.size * settings.bundles.builder.open);
   if (bundled_) gather_ = std::max(gather_, std::min(settings.slots / 4, open));
 }
@@ -26,7 +26,7 @@ RayPlacement::RayPlacement(Machine& machine, const ShadingSettings& settings, co
 /// Hands rays to ray control, through the builder of bundles if there is one.
 void RayPlacement::submit(const RayBatch& rays, Cycle now) {
   if (bundled_) builder_free_ = std::max(builder_free_, now) + ceil_div(rays.size(), builder_rate_);
-  machine_.control.submit(rays);
+  control_.submit(rays);
 }
 
 void RayPlacement::place_again(const RayBatch& rays, Cycle now) {
@@ -41,7 +41,7 @@ void RayPlacement::send_placed(bool placed, Cycle now) {
   }
   for (std::uint32_t r = 0; r < clients_.size(); ++r) {
     groups_.clear();
-    machine_.control.collect(ResourceId(r), groups_);
+    control_.collect(ResourceId(r), groups_);
     for (const RayGroup& group : groups_) travelling_->add(r, group);
   }
   travelling_->send(now);
@@ -50,7 +50,7 @@ void RayPlacement::send_placed(bool placed, Cycle now) {
 void RayPlacement::send_groups(Cycle now) {
   for (std::uint32_t r = 0; r < clients_.size(); ++r) {
     groups_.clear();
-    machine_.control.collect(ResourceId(r), groups_);
+    control_.collect(ResourceId(r), groups_);
     for (RayGroup& group : groups_) {
       place_group(r, group, now);
       if (data_ != nullptr && data_->keeps_records())
@@ -107,7 +107,7 @@ void RayPlacement::free(std::uint32_t resource, const CompletedRays& done, Cycle
     travelling_->freed(resource, done.slots.size());
     for (const Cycle placed : done.placed) slots_.came_back(placed, now);
   } else {
-    machine_.control.free(ResourceId(resource), done.slots);
+    control_.free(ResourceId(resource), done.slots);
     slots_.freed(ResourceId(resource), done.slots, now);
   }
 }

@@ -8,11 +8,11 @@
 #include "core/types/workload.h"
 #include "ringbus/cycle/messages/side_ports.h"
 #include "ringbus/cycle/messages/side_wire.h"
-#include "ringbus/cycle/shading/load_ports.h"
+#include "ringbus/cycle/rays/load_ports.h"
+#include "ringbus/cycle/rays/slot_use.h"
 #include "ringbus/cycle/shading/ray_data.h"
 #include "ringbus/cycle/shading/shading_recorder.h"
 #include "ringbus/cycle/shading/shading_settings.h"
-#include "ringbus/cycle/shading/slot_use.h"
 #include "ringbus/cycle/shading/travelling_groups.h"
 #include "ringbus/protocol/machine.h"
 #include "ringbus/results/trace.h"
@@ -25,8 +25,8 @@ namespace carousel::ringbus::cycle {
 /// group go to its issuer when all its records are loaded. Keeps references to all that it is given.
 class RayPlacement {
  public:
-  RayPlacement(Machine& machine, const ShadingSettings& settings, const std::vector<SidePorts>& clients,
-               ShadingRecorder& recorder, Trace& trace);
+  RayPlacement(Machine& machine, RayControl& control, const ShadingSettings& settings,
+               const std::vector<SidePorts>& clients, ShadingRecorder& recorder, Trace& trace);
 
   /// New rays, which place() takes.
   RayBatch& gathered() { return gathered_; }
@@ -34,7 +34,7 @@ class RayPlacement {
   /// slots. Calls `on_submit(rays)` for rays that are handed to ray control.
   template <class OnSubmit>
   void place(Cycle now, bool last, OnSubmit&& on_submit) {
-    bool placed = machine_.control.place_waiting();
+    bool placed = control_.place_waiting();
     if (gathered_.size() >= gather_ || (last && !gathered_.empty())) {
       submit(gathered_, now);
       on_submit(gathered_);
@@ -65,6 +65,7 @@ class RayPlacement {
   void place_group(std::uint32_t issuer, const RayGroup& group, Cycle now);
 
   Machine& machine_;
+  RayControl& control_;
   const std::vector<SidePorts>& clients_;
   ShadingRecorder& recorder_;
   Trace& trace_;

@@ -28,13 +28,14 @@ ShadeWorkers::ShadeWorkers(const ShadingSettings& settings, const std::vector<Si
   if (settings.shading.sort == ShadingConfig::Sort::kShader)
     sorter_ = std::make_unique<ShadeSorter>(static_cast<std::size_t>(settings.shading.sort_rays_per_cycle));
   for (auto place = static_cast<std::uint32_t>(jobs_.size()); place-- > 0;) idle_.push_back(place);
+  for (std::uint32_t r = 0; r < clients.size(); ++r)
+    if (clients[r].questions != nullptr) callers_.push_back(r);
 }
 
 Cycle ShadeWorkers::next() const {
   Cycle first = ends_.empty() ? kNever : ends_.top().done;
   if (cores_) first = std::min(first, cores_->next());
-  for (std::uint32_t r = 0; r < clients_.size() && clients_[r].questions != nullptr; ++r)
-    first = std::min(first, clients_[r].questions->next());
+  for (const std::uint32_t r : callers_) first = std::min(first, clients_[r].questions->next());
   return sorter_ ? std::min(first, sorter_->next()) : first;
 }
 
@@ -50,7 +51,7 @@ void ShadeWorkers::take_arrivals(Cycle now) {
       const RayResult ray = sorter_->take();
       queues_.push(ray, workload_.shader(ray));
     }
-  for (std::uint32_t r = 0; r < clients_.size() && clients_[r].questions != nullptr; ++r)
+  for (const std::uint32_t r : callers_)
     while (clients_[r].questions->next() <= now) calls_.push_back({r, clients_[r].questions->take()});
 }
 

@@ -126,6 +126,7 @@ class ShadeWorkers {
   std::unique_ptr<ShadeSorter> sorter_;  // with `shading.sort: shader`
   ShadeQueues queues_;
   std::deque<Call> calls_;
+  std::vector<std::uint32_t> callers_;  // resources that make such calls
   std::vector<SideWire> answer_wires_;  // by resource
   std::unique_ptr<ShadeCores> cores_;   // where workers run programs
   ProgramMemory* memory_ = nullptr;     // where data of rays is in memory

@@ -1,172 +1,104 @@
 #include "ringbus/cycle/shading/shading_agent.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include <fmt/format.h>
 
 namespace carousel::ringbus::cycle {
 
-ShadingAgent::ShadingAgent(Machine& machine, const ShadingSettings& settings, Workload& workload,
-                           const Observation& observed, std::vector<SidePorts> clients)
-    : machine_(machine),
-      workload_(workload),
-      clients_(std::move(clients)),
-      trace_(static_cast<std::uint32_t>(machine.topology.resources()), observed.steps),
-      recorder_(machine),
-      open_(settings.slots, settings.packet_rays),
-      camera_(workload, open_),
-      arrivals_(clients_),
-      workers_(settings, clients_, workload, camera_, recorder_),
-      helpers_(clients_, settings.link),
-      placement_(machine, settings, clients_, recorder_, trace_),
-      loss_(settings.fault, settings.link),
-      samples_(observed.samples, clients_.size()) {}
+ShadingAgent::ShadingAgent(Machine& machine, Workload& workload, const Observation& observed, std::vector<Pool> pools)
+    : trace_(static_cast<std::uint32_t>(machine.topology.resources()), observed.steps) {
+  for (std::size_t i = 0; i < pools.size(); ++i)
+    pools_.push_back(std::make_unique<ShadingPool>(ShadingPool::Shared{machine, workload, camera_, trace_},
+                                                   machine.pools.empty() ? machine.control : *machine.pools[i],
+                                                   pools[i].settings, observed.samples, std::move(pools[i].clients)));
+}
 
-void ShadingAgent::keep_in_memory(std::unique_ptr<RayData> data) {
-  data_ = std::move(data);
-  placement_.keep_in_memory(*data_);
-  workers_.read_through(*data_);
+bool ShadingAgent::done() const {
+  return camera_.finished && std::ranges::all_of(pools_, [](const auto& pool) { return pool->none(); });
 }
 
 Cycle ShadingAgent::next() const {
-  const Cycle first = next_but_completed();
-  return done() ? first : std::min(first, arrivals_.next_of_all());
+  Cycle first = started_ ? kNever : 0;
+  const bool all = done();
+  for (const auto& pool : pools_) first = std::min(first, pool->next_of_all(all));
+  return first;
 }
 
-Cycle ShadingAgent::next_but_completed() const {
-  if (!started_) return 0;
-  Cycle first = std::min(workers_.next(), helpers_.next());
-  // When all is done nothing of importance comes, and a resource that stops then is not waited for.
-  if (!done()) first = std::min(first, loss_.give_up_at());
-  return data_ ? std::min(first, data_->next()) : first;
+void ShadingAgent::notify(Cycle at) {
+  for (const auto& pool : pools_) pool->announce(at);
 }
 
 void ShadingAgent::run(Cycle end) {
-  arrivals_.open_window(end);
-  const auto next_known = [&] { return std::min(next_but_completed(), done() ? kNever : arrivals_.next()); };
+  for (const auto& pool : pools_) pool->open_window(end);
+  const auto next_known = [&] {
+    if (!started_) return Cycle{0};
+    Cycle first = kNever;
+    const bool all = done();
+    for (const auto& pool : pools_) first = std::min(first, pool->next(all));
+    return first;
+  };
   while ((next_ = next_known()) < end) step(next_);
 }
 
 void ShadingAgent::step(Cycle now) {
-  samples_.take(now, levels());
   started_ = true;
   now_ = now;
-  take_completed(now);
-  if (data_) [[unlikely]]
-    take_ray_data(now);
-  workers_.take_arrivals(now);
-  if (loss_.give_up_at() <= now) give_up(now);
-  // Shading that takes no time ends in the cycle in which it starts.
-  while (finish_jobs(now) || start_jobs(now)) {
+  for (const auto& pool : pools_) pool->arrive(now);
+  // What one pool has shaded may let the workload have camera rays for another.
+  for (bool again = true; again;) {
+    again = false;
+    for (const auto& pool : pools_) again |= pool->work(now);
+    again &= pools_.size() > 1;
   }
-  place(now);
+  for (const auto& pool : pools_) pool->place(now);
 }
 
-ShadingLevels ShadingAgent::levels() const {
-  return {open_.completed(), workers_.waiting(), workers_.working(), placement_.slots().held()};
+std::uint64_t ShadingAgent::emitted() const {
+  std::uint64_t sum = 0;
+  for (const auto& pool : pools_) sum += pool->emitted();
+  return sum;
 }
 
-void ShadingAgent::take_completed(Cycle now) {
-  arrivals_.take(now, [&](std::uint32_t resource, const CompletedRays& done) {
-    if (done.note != CompletedRays::Note::kDone) return on_note(resource, done.note, now);
-    placement_.free(resource, done, now);
-    loss_.came_back(done.rays);
-    recorder_.taken(ResourceId(resource), done.rays, done.slots, now);
-    if (data_) [[unlikely]]
-      data_->completed(ResourceId(resource), done.slots, now);
-    for (const RayResult& ray : done.rays)
-      if (!data_ || !data_->fetch_for_shading(ray, now)) workers_.add(ray, now);
-  });
+std::uint64_t ShadingAgent::completed() const {
+  std::uint64_t sum = 0;
+  for (const auto& pool : pools_) sum += pool->completed();
+  return sum;
 }
 
-void ShadingAgent::take_ray_data(Cycle now) {
-  data_->take(now, arrived_);
-  for (const RayResult& ray : arrived_.rays) workers_.add(ray, now);
-  for (const ProgramRead& read : arrived_.reads) workers_.answer(read, now);
-  for (RayData::Group& group : arrived_.groups) placement_.send_group(group.issuer, std::move(group.rays), now);
+Cycle ShadingAgent::busy() const {
+  Cycle sum = 0;
+  for (const auto& pool : pools_) sum += pool->busy();
+  return sum;
 }
 
-bool ShadingAgent::finish_jobs(Cycle now) {
-  shaded_.clear();
-  helpers_.take_notes(now, shaded_);
-  const bool any = workers_.finish(now, shaded_, [&](const RayBatch& made, Cycle began) {
-    open_.made(made.size());
-    recorder_.made(made, began, now);
-    if (data_) [[unlikely]]
-      data_->made(made, now);
-    placement_.gathered().insert(placement_.gathered().end(), made.begin(), made.end());
-  });
-  if (shaded_.empty()) return any;
-  shade(now);
-  return true;
+ShadingCounts ShadingAgent::counts() const {
+  ShadingCounts sum;
+  for (const auto& pool : pools_) sum += pool->counts();
+  return sum;
 }
 
-/// The workload shades the rays whose time is over, and makes those that they cause.
-void ShadingAgent::shade(Cycle now) {
-  RayBatch& gathered = placement_.gathered();
-  const std::size_t before = gathered.size();
-  recorder_.shaded(shaded_, now);
-  if (data_) [[unlikely]]
-    data_->will_shade(shaded_);
-  workload_.shade(WorkerId(0), shaded_, gathered);
-  const auto caused = std::span(gathered).subspan(before);
-  if (data_) [[unlikely]] {
-    data_->made(caused, now);
-    data_->shaded(shaded_, now);
-  }
-  recorder_.made(caused, now, now);
-  trace_.note(now, StepKind::kShade, 0, shaded_.size());
-  open_.caused(caused.size());
-  open_.shaded(shaded_.size());
-  camera_.ask_again();
+Log2Histogram ShadingAgent::residence() const {
+  Log2Histogram sum;
+  for (const auto& pool : pools_) sum += pool->residence();
+  return sum;
 }
 
-bool ShadingAgent::start_jobs(Cycle now) {
-  bool any = workers_.start(now);
-  while (helpers_.any()) {
-    const auto ray = workers_.take_for_helper(now);
-    if (!ray) break;
-    helpers_.give(ray->first, ray->second, now);
-    any = true;
-  }
-  return any;
+void ShadingAgent::close(Cycle end) {
+  for (const auto& pool : pools_) pool->close(end);
 }
 
-void ShadingAgent::place(Cycle now) {
-  if (loss_.draining()) return;
-  const bool last = workers_.waiting() == 0 && workers_.working() == 0 && helpers_.out() == 0;
-  placement_.place(now, last, [&](const RayBatch& rays) { loss_.submitted(rays); });
-}
-
-void ShadingAgent::on_note(std::uint32_t resource, CompletedRays::Note note, Cycle now) {
-  if (note == CompletedRays::Note::kLastBeat)
-    loss_.on_last_beat(resource, now);
-  else if (loss_.drained_last())
-    restart(now);
-}
-
-void ShadingAgent::give_up(Cycle now) {
-  const std::uint32_t stopped = loss_.give_up(clients_.size(), open_.completed(), now);
-  if (const std::optional<RayResult> ray = helpers_.exclude(clients_[stopped].jobs)) workers_.add(*ray, now);
-  placement_.order_all(NewRays::Order::kDiscard, now);
-}
-
-/// Begins again, when no packet is under way and no resource holds an ID.
-void ShadingAgent::restart(Cycle now) {
-  machine_.control.discard();
-  placement_.slots().clear(now);
-  open_.remove_slots(machine_.control.exclude(ResourceId(loss_.stopped())));
-  placement_.order_all(NewRays::Order::kResume, now);
-  if (const RayBatch rays = loss_.restart(now); !rays.empty()) placement_.place_again(rays, now);
+void ShadingAgent::record(const Recording& recording) {
+  for (const auto& pool : pools_) pool->record(recording);
 }
 
 std::string ShadingAgent::describe() const {
   if (done()) return "";
-  return fmt::format("ray control and shading: {} rays outstanding, {} to be shaded, {} free slots, {}",
-                     open_.outstanding(), workers_.waiting(), machine_.control.free_slots(),
-                     camera_.finished() ? "no more to come" : "more to come");
+  std::string text;
+  for (std::size_t i = 0; i < pools_.size(); ++i)
+    text += (i > 0 ? "\n  " : "") + (pools_.size() > 1 ? fmt::format("pool {}: ", i) : "") + pools_[i]->describe();
+  return text;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "ringbus/cycle/messages/side_ports.h"
-#include "ringbus/cycle/shading/load_ports.h"
+#include "ringbus/cycle/rays/load_ports.h"
 #include "ringbus/cycle/shading/shading_settings.h"
 #include "ringbus/protocol/machine.h"
 

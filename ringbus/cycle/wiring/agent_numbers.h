@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <vector>
 
 namespace carousel::ringbus::cycle {
 
@@ -14,7 +15,8 @@ struct AgentNumbers {
   std::uint32_t memories = 1, relays = 0, shared_links = 0;
   /// Which parts are drawn: what is sent to them goes to the relay of its sender.
   bool caches_drawn = false, memories_drawn = false, new_rays_drawn = false, completed_drawn = false;
-  std::uint32_t first_cache_node = 0, shading_node = 0;  ///< of the graph
+  std::uint32_t first_cache_node = 0;       ///< of the graph
+  std::vector<std::uint32_t> pool_nodes{};  ///< of the graph, by resource: where its pool of workers is drawn
 
   std::uint32_t cache(std::size_t number) const { return nodes + static_cast<std::uint32_t>(number); }
   std::uint32_t own_cache(std::size_t resource) const { return nodes + caches + static_cast<std::uint32_t>(resource); }

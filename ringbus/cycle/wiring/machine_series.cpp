@@ -25,7 +25,7 @@ class SeriesWriter {
       interval_ = std::max(interval_, samples.interval());
       end = std::max(end, samples.end());
     };
-    look(machine.shading().samples());
+    for (const auto& pool : machine.shading().pools()) look(pool->samples());
     for (const auto& memory : machine.memory().memories()) look(memory->samples());
     for (const auto& resource : machine.resources()) look(resource->samples());
     for (const auto& hub : machine.network().hubs()) look(hub->samples());
@@ -39,6 +39,8 @@ class SeriesWriter {
   TimeSeries write() {
     read_links();
     machine_rows();
+    for (std::size_t p = 0; machine_.shading().pools().size() > 1 && p < machine_.shading().pools().size(); ++p)
+      pool_rows(p);
     for (std::size_t r = 0; r < machine_.resources().size(); ++r) resource_rows(r);
     for (std::size_t link = 0; link < links_.size(); ++link) {
       const std::string part = fmt::format("link {}", link);
@@ -68,7 +70,8 @@ class SeriesWriter {
     row({"machine", "rays completed", "rays", Kind::kSum}, shading(ShadingCounter::kCompleted));
     Sums held = zeros();
     for (std::size_t r = 0; r < resources; ++r)
-      machine_.shading().samples().add_to(held, interval_, kFirstHeldCounter + r);
+      for (const auto& pool : machine_.shading().pools())
+        pool->samples().add_to(held, interval_, kFirstHeldCounter + r);
     for (const auto& resource : machine_.resources())
       resource->samples().add_to(held, interval_, counter_index(ResourceCounter::kHeld));
     row({"machine", "rays held", "rays", Kind::kMean}, held);
@@ -93,6 +96,18 @@ class SeriesWriter {
     row({"machine", "bytes of DRAM", "bytes", Kind::kSum}, dram);
     const double width = machine_.memory().peak_bytes_per_cycle();
     row({"machine", "DRAM busy", "share", Kind::kMean}, dram, width);
+  }
+
+  void pool_rows(std::size_t p) {
+    const std::string part = fmt::format("pool {}", p);
+    const auto own = [&](ShadingCounter counter) {
+      Sums sums = zeros();
+      machine_.shading().pools()[p]->samples().add_to(sums, interval_, counter_index(counter));
+      return sums;
+    };
+    row({part, "rays completed", "rays", Kind::kSum}, own(ShadingCounter::kCompleted));
+    row({part, "rays waiting to be shaded", "rays", Kind::kMean}, own(ShadingCounter::kWaiting));
+    row({part, "shader workers busy", "workers", Kind::kMean}, own(ShadingCounter::kWorkers));
   }
 
   void resource_rows(std::size_t r) {
@@ -122,7 +137,7 @@ class SeriesWriter {
   Sums zeros() const { return Sums(out_.samples); }
   Sums of_shading(std::size_t counter) const {
     Sums sums = zeros();
-    machine_.shading().samples().add_to(sums, interval_, counter);
+    for (const auto& pool : machine_.shading().pools()) pool->samples().add_to(sums, interval_, counter);
     return sums;
   }
   void add_port(Sums& sums, const Topology::Wire& wire, std::size_t port, PortCounter counter) const {

@@ -77,8 +77,8 @@ LineTurns ParcelNetwork::turns(const Banks& banks) const {
 ParcelNetwork::Sides ParcelNetwork::join(std::uint32_t resource, const SidePorts& side) {
   Sides out{side, side};
   const config::DrawnParts& parts = plan_.parts;
-  if (parts.shading) {
-    const std::uint32_t shading = *parts.shading;
+  if (!parts.pools.empty()) {
+    const std::uint32_t shading = parts.pool_node(resource);
     if (parts.new_rays)
       out.resource.new_rays = &channel(new_rays_, at_ends_, {numbers_.relay(resource), resource, kDoorCycles, true});
     if (parts.completed_rays)

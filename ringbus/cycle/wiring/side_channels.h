@@ -38,10 +38,11 @@ class SideChannels {
   /// a kind of pushed shapes its cache sends it shapes for which others have asked.
   SideChannels(ChannelList& list, const SideKinds& kinds, const SideLatencies& latency, const AgentNumbers& agents,
                std::uint32_t resource, bool helps, bool calls_shader)
-      : new_rays_(list.at(kinds.control.new_rays,
-                          agents.new_rays_drawn
-                              ? ChannelEnds{agents.shading(), agents.relay(agents.shading_node), latency.control}
-                              : ChannelEnds{agents.shading(), resource, latency.control, true})),
+      : new_rays_(
+            list.at(kinds.control.new_rays,
+                    agents.new_rays_drawn
+                        ? ChannelEnds{agents.shading(), agents.relay(agents.pool_nodes[resource]), latency.control}
+                        : ChannelEnds{agents.shading(), resource, latency.control, true})),
         completed_(list.at(kinds.control.completed,
                            agents.completed_drawn ? ChannelEnds{resource, agents.relay(resource), latency.control}
                                                   : ChannelEnds{resource, agents.shading(), latency.control, true})),

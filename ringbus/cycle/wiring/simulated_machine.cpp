@@ -49,7 +49,7 @@ AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory,
   }
   out.new_rays_drawn = parts.new_rays;
   out.completed_drawn = parts.completed_rays;
-  out.shading_node = parts.shading.value_or(0);
+  for (std::uint32_t r = 0; !parts.pools.empty() && r < resources; ++r) out.pool_nodes.push_back(parts.pool_node(r));
   return out;
 }
 
@@ -70,22 +70,24 @@ bool has_ray_data(const Config& config, const accel::Accel& accel) {
          reads_first_hits(config);
 }
 
-ShadingSettings shading_settings(const Config& config) {
+/// Of each pool. `pool_of`: by resource, where there are several.
+std::vector<ShadingSettings> shading_settings(const Config& config, const std::vector<std::size_t>& pool_of) {
   std::shared_ptr<const ShadePrograms> programs;
   if (config.shading.program.any())
     programs = std::make_shared<const ShadePrograms>(shade_programs(config.shading, config.programs, config.testers));
   const std::size_t vectors = programs ? vectors_held(config.shading, *programs) : 1;
-  return {config.shading,
-          config.bundles,
-          config.topology.link,
-          config.faults.resource,
-          static_cast<std::size_t>(shader_workers(config)),
-          static_cast<std::size_t>(all_slots(config)),
-          static_cast<std::size_t>(config.packets.rays),
-          static_cast<std::uint64_t>(config.image.seed),
-          std::move(programs),
-          vectors,
-          config.rays.placement == Placement::kAddressed};
+  std::vector<ShadingSettings> out;
+  for (const std::int64_t workers : pool_workers(config))
+    out.push_back({config.shading, config.bundles, config.topology.link, config.faults.resource,
+                   static_cast<std::size_t>(workers), static_cast<std::size_t>(all_slots(config)),
+                   static_cast<std::size_t>(config.packets.rays), static_cast<std::uint64_t>(config.image.seed),
+                   programs, vectors, config.rays.placement == Placement::kAddressed});
+  if (pool_of.empty()) return out;
+  for (ShadingSettings& of : out) of.slots = 0;
+  for (std::size_t r = 0; r < pool_of.size(); ++r)
+    out[pool_of[r]].slots +=
+        static_cast<std::size_t>(own_sections(config, static_cast<std::int64_t>(r)).rays.slots_per_resource);
+  return out;
 }
 
 /// Packets that a resource may have in test at once, by resource.
@@ -143,6 +145,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                            has_distributor(config) ? &config.testers.distributor : nullptr,
                            config.collections.traversal)),
       parts_(channels_, numbers_, config.parts, config.memory, config.topology.link, shared_.topology.resources()) {
+  if (plan_.parts.pools.size() > 1) shared_.divide_control(config, scene_size, plan_.parts.pool_of);
   if (plan_.any())
     parcels_ = std::make_unique<ParcelNetwork>(channels_, plan_, numbers_, shared_.topology, network_,
                                                config.topology.link, config.memory);
@@ -153,7 +156,9 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   if (accounts_for_rays(config, observed))
     times_ = std::make_unique<RayTimes>(shared_.topology.resources(), most_slots(shared_), shared_.packets.size(),
                                         workload, observed.heat);
-  std::vector<SidePorts> sides;  // of shading
+  std::vector<ShadingAgent::Pool> pools;
+  for (ShadingSettings& settings : shading_settings(config, shared_.pool_of))
+    pools.push_back({std::move(settings), std::vector<SidePorts>(shared_.topology.resources())});
   std::vector<ShapeCache::Client> cache_clients;
   for (std::uint32_t r = 0; r < shared_.topology.resources(); ++r) {
     const ResourceId id(r);
@@ -163,11 +168,12 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
     SidePorts side = sides_.back()->ports();
     side.hints = parts_.hints_of(r);
     cache_clients.push_back({side.fetch, side.fetched, side.pushed});
-    sides.push_back(side);
+    SidePorts& of_shading = pools[shared_.pools.empty() ? 0 : shared_.pool_of[r]].clients[r];
+    of_shading = side;
     if (parcels_) {
       const ParcelNetwork::Sides over_links = parcels_->join(r, side);
       side = over_links.resource;
-      sides.back() = over_links.shading;
+      of_shading = over_links.shading;
     }
     TileSettings settings = tile_settings(config, id, scene_size, statistics, observed);
     settings.blocks = shape_blocks_.get();
@@ -185,7 +191,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
       resources_.push_back(std::make_unique<IndependentTile>(id, shared_, shape_memory_, settings, side));
     }
   }
-  shading_ = std::make_unique<ShadingAgent>(shared_, shading_settings(config), workload, observed, std::move(sides));
+  shading_ = std::make_unique<ShadingAgent>(shared_, workload, observed, std::move(pools));
   Recording recording = recorder_ ? recorder_->of_shading() : Recording{};
   recording.times = times_.get();
   shading_->record(recording);

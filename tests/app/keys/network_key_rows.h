@@ -74,6 +74,13 @@ inline std::vector<KeyRow> network_key_rows() {
         "{from: 'r[*]', to: s, both: true, carries: [new_rays, completed_rays]}]",
         "[{ring: 'r[*]', carries: [packets, shapes]}, {line: 'r[0], l2', both: true, carries: [shapes]}, "
         "{from: 'r[*]', to: s, both: true, carries: [new_rays]}]"}},
+      {"topology.nodes",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: a, kind: shading, serves: 'r[0..1]'}, "
+        "{name: b, kind: shading}], links: [{ring: 'r[*]'}, "
+        "{from: 'r[*]', all_to: 'a, b', both: true, carries: [new_rays, completed_rays]}]}"},
+       {"[{name: r, count: 4}, {name: a, kind: shading, serves: 'r[0..1]', workers: 1}, {name: b, kind: shading}]",
+        "[{name: r, count: 4}, {name: a, kind: shading, serves: 'r[0..2]'}, {name: b, kind: shading}]"}},
       {"topology.routes",
        kTerrain,
        {"topology={shape: graph, nodes: [{name: r, count: 5}], links: [{ring: 'r[*]', both: true}]}",

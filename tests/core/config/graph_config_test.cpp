@@ -302,7 +302,7 @@ TEST(GraphConfig, PartsAreFoundBehindTheResources) {
   EXPECT_THAT(parts.caches_of, ElementsAre(0u, 0u));
   EXPECT_THAT(parts.memories.nodes, ElementsAre(3u));
   EXPECT_EQ(parts.memories.interleave_bytes, 64);
-  EXPECT_FALSE(parts.shading);
+  EXPECT_TRUE(parts.pools.empty());
   const std::string text = resolved_yaml(config);
   EXPECT_EQ(parse_config(text, "again.yaml").topology.links, config.topology.links) << text;
 }
@@ -380,7 +380,7 @@ TEST(GraphConfig, PartsThatCannotWorkAreRefusedByName) {
                    "memory.fetch: caches that are drawn do not have this yet; expected resource, found multicast"},
            BadPart{"topology: {shape: graph, nodes: [{name: r}, {name: s, kind: shading, count: 2}],\n"
                    "  links: [{from: r, to: 's[*]', both: true, carries: [new_rays, completed_rays]}]}\n",
-                   "topology.nodes.1.kind: all workers are one pool, which is s[0]"},
+                   "topology.nodes.1.kind: no rays come to s[1], as other pools are nearer to all resources"},
            BadPart{"topology: {shape: graph, nodes: [{name: r, count: 2}, {name: s, kind: shading}],\n"
                    "  links: [{ring: 'r[*]'}, {from: s, to: 'r[0]', both: true, carries: [new_rays]}]}\n",
                    "topology.links: there is no way from s to r[1] over links that carry new_rays"}})

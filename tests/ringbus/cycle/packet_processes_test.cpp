@@ -85,6 +85,21 @@ TEST_F(PacketProcesses, GoOnNativelyWhenOneStops) {
     }
 }
 
+// A packet process and its resources belong to one pool of workers.
+TEST_F(PacketProcesses, HaveAPoolOfWorkersEach) {
+  const std::string pools = "    - {name: s, kind: shading, serves: 'r[0]'}\n    - {name: t, kind: shading}\n";
+  const std::string links =
+      "    - {from: 'r[*], p[*]', all_to: 's, t', both: true, carries: [new_rays, completed_rays]}\n";
+  for (const char* set : {"bundles.size=0", "bundles.size=4", "rays.placement=round_robin"}) {
+    SCOPED_TRACE(set);
+    std::string machine = kMachine;
+    machine.insert(machine.find("  links:"), pools);
+    const Outcome out = run_text(scene_, machine + links, {"bundles.builder.threshold=2", set}, 2);
+    ASSERT_EQ(out.result.cycle->pools.size(), 2u);
+    for (const cycle::PoolUse& pool : out.result.cycle->pools) EXPECT_GT(pool.shaded, 0u);
+  }
+}
+
 TEST_F(PacketProcesses, APauseOfOneIsFeltNatively) {
   Cell cell;
   cell.config =
