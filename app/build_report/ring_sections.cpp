@@ -14,6 +14,7 @@
 #include "core/types/enum_names.h"
 #include "core/types/ray.h"
 #include "report/text/ratio.h"
+#include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/results/run_features.h"
 #include "ringbus/time/clock_ratio.h"
 #include "ringbus/topology/topology.h"
@@ -130,15 +131,39 @@ void add_ray_queues(report::Report& r, const ringbus::RunResult& result, const C
   r.host.ray_queues = {ray_queue(config.shading.queue, result.completed), ray_queue(config.rays.queue, result.groups)};
 }
 
+namespace {
+
+/// What each link carries, in the order of the rows: those with packets, those without, and those between stops of
+/// rings. Nothing where links carry packets alone, or are queues of the native engine, which do.
+std::vector<std::string> carried_by_rows(const Config& config) {
+  if (config.engine.kind == EngineKind::kNative) return {};
+  const ringbus::ParcelPlan plan = ringbus::plan_parcels(config.topology, config.memory.line_bytes);
+  if (!plan.any()) return {};
+  std::vector<std::string> with, without, stops;
+  for (const config::Graph::Link& link : plan.graph.links) {
+    std::string text;
+    for (const Carried what : link.carries) text += (text.empty() ? "" : ", ") + std::string(enum_name(what));
+    const bool packets = link.carries_any({Carried::kPackets}) && config.topology.resources > 1;
+    (!packets ? without : config::has_stops(config.topology.links[link.entry]) ? stops : with).push_back(text);
+  }
+  with.insert(with.end(), without.begin(), without.end());
+  with.insert(with.end(), stops.begin(), stops.end());
+  return with;
+}
+
+}  // namespace
+
 void add_links(report::Report& r, const ringbus::RunResult& result, const Config& config) {
   r.links.emplace();
   const ringbus::Topology topology(config.topology);
+  const std::vector<std::string> carries = carried_by_rows(config);
   for (const ringbus::LinkResult& link : result.links) {
     const ringbus::LinkStatistics& s = link.statistics;
     r.links->push_back({link.from.value, link.to.value, link.depth, s.packets, ratio(s.occupancy_sum, s.samples),
                         s.occupancy_max, s.refusals});
     report::Link& out = r.links->back();
     if (config.faults.links.any()) out.faults = link.faults;
+    if (!carries.empty()) out.carries = carries[r.links->size() - 1];
     if (config.engine.kind == EngineKind::kCycle) continue;
     const auto& own = topology.wires()[r.links->size() - 1].queue;
     out.queue = enum_name(own.value_or(config.topology.link.queue));

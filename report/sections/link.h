@@ -29,7 +29,7 @@ struct Link {
   std::optional<double> sent_at_once{}, received_at_once{};
   std::optional<std::uint64_t> full_stalls{}, empty_stalls{};
   std::optional<LinkFaultCounts> faults{};
-  std::optional<std::string> clock{};
+  std::optional<std::string> clock{}, carries{};
 };
 
 template <class V>
@@ -56,6 +56,8 @@ void describe(V& v, const Link& r) {
   v.field("full_stalls", r.full_stalls, "sends", "sends of which the queue did not take all packets (native)");
   v.field("empty_stalls", r.empty_stalls, "receptions", "receptions that found no packet (native)");
   v.field("clock", r.clock, "", "name of its clock, where there are several");
+  v.field("carries", r.carries, "",
+          "what travels over it, as topology.links.carries has it, where links carry more than packets (cycle)");
   v.section("faults", r.faults, "faults of frames and acknowledgements, with faults.links");
 }
 

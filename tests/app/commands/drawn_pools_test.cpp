@@ -86,6 +86,27 @@ TEST(DrawnPools, TheReportHasEachPoolAndItsSums) {
   }
 }
 
+TEST(DrawnPools, RowsOfLinksSayWhatTheyCarry) {
+  const Program program;
+  program.write("pools.yaml", "engine: {kind: cycle, threads: 1, what_if: false}\n" + kScene + kPools);
+  const Json report = report_of(program, "pools.yaml");
+  std::vector<std::string> between;
+  std::size_t packets = 0;
+  for (const Json& link : report["links"]) {
+    const std::string carries = link["carries"];
+    EXPECT_EQ(link["depth"] == 0, carries == "new_rays, completed_rays") << link;
+    packets += carries == "packets";
+    const Json& names = report["drawing"];
+    if (names[link["from"].get<std::size_t>()]["name"] == "r[5]" && names[link["to"].get<std::size_t>()]["name"] == "x")
+      between.push_back(carries);
+  }
+  EXPECT_EQ(packets, 7u);
+  EXPECT_EQ(between, (std::vector<std::string>{"packets", "new_rays, completed_rays"}));
+  program.write("ring.yaml", "engine: {kind: cycle, threads: 1, what_if: false}\n" + kScene);
+  const Json ring = report_of(program, "ring.yaml");
+  EXPECT_FALSE(ring["links"][0].contains("carries"));
+}
+
 TEST(DrawnPools, CheckAndPageNameThem) {
   const Program program;
   program.write("pools.yaml", "engine: {kind: cycle, threads: 1, what_if: false}\n" + kScene + kPools);
@@ -100,6 +121,7 @@ TEST(DrawnPools, CheckAndPageNameThem) {
   ASSERT_EQ(run.status, 0) << run.err;
   const std::string page = program.read("out/report.html");
   EXPECT_THAT(page, HasSubstr("Pools of shader workers"));
+  EXPECT_THAT(page, HasSubstr("new_rays, completed_rays"));
 }
 
 // Both pools have area, and energy is that of all rays.
