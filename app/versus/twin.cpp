@@ -166,6 +166,12 @@ void draw_twin(const LocatedConfig& located, Twin& twin) {
   drawn.topology = without_packets_drawn(located.config);
   drawn.shading.workers = located.config.shading.workers;
   drawn.memory.shared_by = located.config.memory.shared_by;
+  drawn.clocks = located.config.clocks;
+  std::erase_if(drawn.clocks.others, [&](const auto& clock) {
+    const auto goes_by_it = [&](const auto& one) { return one.clock == clock.first; };
+    return std::ranges::none_of(drawn.topology.nodes, goes_by_it) &&
+           std::ranges::none_of(drawn.topology.links, goes_by_it);
+  });
   if (const std::vector<ConfigIssue> issues = validate_config(drawn, located.positions); !issues.empty()) {
     twin.drawing = fmt::format("{}{}: {}", not_drawn, issues.front().key_path, issues.front().message);
     return;

@@ -240,7 +240,7 @@ class CycleRun {
       const config::Graph::Link& drawn = plan.drawn(plan.links[i]);
       const LinkTime& time = machine_.parcels()->time_of(i);
       if (plan.links[i].wire == ParcelPlan::kNone) {
-        c.links.push_back({drawn.from, drawn.to, {time.busy(end), 0}, time.queue(), time.bytes()});
+        c.links.push_back({drawn.from, drawn.to, {time.busy(end), 0}, time.queue(), time.bytes(), drawn.mhz});
         LinkStatistics s;
         s.packets = time.parcels();
         out.links.push_back({ResourceId(drawn.from), ResourceId(drawn.to), 0, s, {}, {}});
@@ -306,11 +306,6 @@ class CycleRun {
     return out;
   }
 
-  const OutPort& port_of(std::uint32_t wire) const {
-    const Topology& topology = machine_.shared().topology;
-    return machine_.out_of(topology.wires()[wire].from)[topology.out_port_of(wire)];
-  }
-
   /// The links are as many media side by side; a bus is one, to which the links of the resources lead: what one of them
   /// brings crosses it once, whoever hears it.
   ClassUse link_use() const {
@@ -328,7 +323,7 @@ class CycleRun {
       if (const std::uint32_t shared = plan.links[i].wire; shared == ParcelPlan::kNone)
         out.parts += 1;
       else  // which has the packets too
-        out.busy -= port_of(shared).busy();
+        out.busy -= machine_.busy_of_link(shared, machine_.shared().topology.out_port_of(shared));
     }
     return out;
   }

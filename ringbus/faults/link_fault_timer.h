@@ -18,11 +18,14 @@ namespace carousel::ringbus::cycle {
 /// again after a time, to which the receiver only answers.
 class LinkFaultTimer {
  public:
-  LinkFaultTimer(const FaultsConfig::Links& links, std::int64_t seed, std::uint64_t link, Cycle latency)
+  /// `crossings`: of a round trip, between the clocks of the link and its ends. All times are by that of the link.
+  LinkFaultTimer(const FaultsConfig::Links& links, std::int64_t seed, std::uint64_t link, Cycle latency,
+                 Cycle crossings = 0)
       : injector_(links, seed, 2 * link),
         ack_injector_(links, seed, 2 * link + 1),
         delay_(static_cast<Cycle>(links.delay_cycles)),
-        latency_(latency) {}
+        latency_(latency),
+        crossings_(crossings) {}
 
   struct Delivery {
     Cycle arrival = 0;    ///< arrival of the head
@@ -95,7 +98,7 @@ class LinkFaultTimer {
 
  private:
   /// The time after which an answer would be there.
-  Cycle round_trip() const { return 2 * latency_ + cycles_; }
+  Cycle round_trip() const { return 2 * latency_ + crossings_ + cycles_; }
   std::uint32_t learn(std::size_t count) {
     overdue_.erase(overdue_.begin(), overdue_.begin() + static_cast<std::ptrdiff_t>(count));
     if (overdue_.empty()) repeat_at_ = kNever;
@@ -116,7 +119,7 @@ class LinkFaultTimer {
   }
 
   FaultInjector injector_, ack_injector_;
-  Cycle delay_, latency_;
+  Cycle delay_, latency_, crossings_;
   Cycle cycles_ = 1;  // length of the last packet
   Cycle last_ = 0;
   bool overtaken_ = false;     // the frame before comes after the next one

@@ -33,6 +33,8 @@ class ClockRatio {
   /// The last edge of the network's clock that is not after an edge of the resources'.
   Cycle floor_to_network(Cycle core) const { return core * network_ / core_; }
   bool equal() const { return core_ == network_; }
+  /// The network's cycles in a cycle of the resources.
+  double network_per_core() const { return static_cast<double>(network_) / static_cast<double>(core_); }
 
   /// The first edge of the resources' clock from which on something that leaves it `wait` cycles later is there by the
   /// network's at `edge` at the earliest.

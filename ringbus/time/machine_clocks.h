@@ -16,6 +16,8 @@ class MachineClocks {
 
   /// A part of the machine goes by this clock.
   void use(std::int64_t mhz) { fastest_ = std::max(fastest_, of(mhz)); }
+  /// The frequency itself.
+  std::int64_t of(std::int64_t mhz) const { return mhz == 0 ? core_ : mhz; }
   /// From the cycles of one to those of another, with the synchroniser between them.
   ClockRatio between(std::int64_t from, std::int64_t to) const { return {of(from), of(to), synchroniser_}; }
   /// From the cycles of the resources to those of another.
@@ -25,8 +27,6 @@ class MachineClocks {
   ClockRatio to_fastest(std::int64_t from) const { return {of(from), std::max(fastest_, of(from)), 0}; }
 
  private:
-  std::int64_t of(std::int64_t mhz) const { return mhz == 0 ? core_ : mhz; }
-
   std::int64_t core_, synchroniser_;
   std::int64_t fastest_ = 0;
 };

@@ -96,7 +96,7 @@ void describe(V& v, ClocksConfig& c) {
                   "The clock of the links, routers and stops of a graph that name no other; with synthetic traffic its "
                   "resources pass packets on by it, too. auto is that of the resources.");
   v.field("synchroniser_cycles", c.synchroniser_cycles, IntRange{0, 1000}, "cycles",
-          "The time, by the clock that is entered, from the first edge after a packet has come from the other clock "
+          "The time, by the clock that is entered, from the first edge after a message has come from the other clock "
           "until it is there. Equal clocks have no synchroniser.");
   v.others(c.others, IntRange{1, 100'000}, "MHz",
            "Any other name is that of a further clock, by which nodes and links of a graph go that name it.");

@@ -233,9 +233,11 @@ void describe(V& v, GraphNode& c) {
   v.field("step", c.step, kDiePlace, "mm", "From a node of a group to the next in its row and in its column.");
   v.field_or_auto("columns", c.columns, IntRange{1, kMaxResources}, "nodes",
                   "The nodes in a row of a group that has places; auto is all of them.");
-  v.field("clock", c.clock, "",
-          "The clock, a name of `clocks`, by which the node passes packets on; left out, noc at a router, and with "
-          "synthetic traffic at every node, and core elsewhere.");
+  v.field(
+      "clock", c.clock, "",
+      "The clock, a name of `clocks`, by which a router passes messages on, and a memory moves lines and spends the "
+      "half of its latency on the way back. With synthetic traffic resources have one, too. Left out, noc at a "
+      "router, and with synthetic traffic at every node, and core elsewhere.");
   describe(v, c.own);
   v.section("testers", c.testers,
             "The testers of these resources. A key that is not given is as in `testers` of the whole machine.");

@@ -216,21 +216,15 @@ void check_clocked_parts(const Config& config, const RuleBreach& breach) {
   for (std::size_t i = 0; i < c.nodes.size(); ++i) {
     const GraphNode& node = c.nodes[i];
     several |= node.mhz != 0;
-    if (node.mhz == 0 || traffic || node.kind == GraphNodeKind::kRouter) continue;
+    if (node.mhz == 0 || traffic || node.kind == GraphNodeKind::kRouter || node.kind == GraphNodeKind::kMemory)
+      continue;
     breach(fmt::format("topology.nodes.{}.clock", i),
            fmt::format("a {} goes by the clock of the run, in whose cycles its parts are counted; expected core, or a "
-                       "router, or workload: traffic; found {}",
+                       "router or memory, or workload: traffic; found {}",
                        enum_name(node.kind), node.clock));
   }
   for (const GraphLink& link : c.links) several |= link.mhz != 0;
   if (!several) return;
-  for (std::size_t i = 0; i < c.links.size(); ++i)
-    if (c.links[i].carries != GraphLink{}.carries)
-      breach(fmt::format("topology.links.{}.carries", i),
-             fmt::format("a drawing that carries more than packets has one clock yet; expected {}equal clocks",
-                         properties_of(c).has_packets ? "[packets], or " : ""));
-  if (config.faults.links.any() && !traffic)
-    breach("faults.links", "links between several clocks have no faults yet; expected none, or equal clocks");
   for (std::size_t i = 0; i < c.links.size() && is_bus(c); ++i)
     if (const GraphLink& link = c.links[i]; link.mhz != 0)
       breach(fmt::format("topology.links.{}.clock", i),

@@ -86,12 +86,12 @@ class OutPortOf {
  public:
   OutPortOf(WireOf<T>& wire, Cycle latency, std::uint32_t depth, std::size_t places)
       : wire_(&wire), latency_(latency), credits_(depth), places_(places) {}
-  /// From now on the link has faults.
+  /// From now on the link has faults, whose times are by the clock of the link.
   void fail(const LinkFaultTimer& faults) {
     faults_ = std::make_unique<LinkFaultTimer>(faults);
     plain_ = false;
   }
-  /// The link goes by another clock than its sender; its latency is by its own. Without faults.
+  /// The link goes by another clock than its sender; its latency is by its own.
   void cross(const ClockRatio& to_link, Cycle node_cycles) {
     near_ = std::make_unique<NearClock>(NearClock{to_link, node_cycles});
     plain_ = false;
@@ -190,32 +190,47 @@ class OutPortOf {
   Cycle wants_to_start() const { return std::max(free_at_, queue_.front().ready); }
   Cycle next_credit() const {
     const Cycle credit = wire_->packets.next_return();
-    return faults_ ? std::min(credit, faults_->next()) : credit;
+    if (!faults_) return credit;
+    const Cycle late = faults_->next();
+    return std::min(credit, near_ == nullptr || late == kNever ? late : near_->to_link.to_core(late));
   }
+  /// By the clock of the link, where that has another one.
+  Cycle by_link(Cycle now) const { return near_ == nullptr ? now : near_->to_link.to_network(now); }
   /// Where some are lost.
   [[gnu::cold, gnu::noinline]] void take_uncertain_credits(Cycle now) {
     for (Cycle at; (at = wire_->packets.next_return()) <= now;) {
       wire_->packets.take_return();
       recover_credits(at);
-      credits_ += faults_->acknowledge(at);
+      credits_ += faults_->acknowledge(by_link(at));
     }
     recover_credits(now);
   }
   /// Recovers credits that were lost on their way. Asking for them occupies the link like a packet, and does not count
   /// as waiting.
   void recover_credits(Cycle now) {
-    const LinkFaultTimer::Recovered made = faults_->recovered(now);
+    const LinkFaultTimer::Recovered made = faults_->recovered(by_link(now));
     if (const Cycle blocked = blocked_from(); made.busy > 0 && blocked < now) stalled_ += now - blocked;
     credits_ += made.places;
     if (made.busy == 0) return;
+    if (near_ != nullptr) {
+      free_at_ = std::max(free_at_, moves(*near_, std::max(near_->link_free, by_link(now)) + made.busy, made.busy));
+      return;
+    }
     free_at_ = std::max(free_at_, now) + made.busy;
     busy_ += made.busy;
+  }
+  /// The link moves something for `busy` cycles of its own until `end`. Returns the first cycle in which another packet
+  /// may be sent.
+  static Cycle moves(NearClock& near, Cycle end, Cycle busy) {
+    near.link_free = end;
+    near.busy += busy;
+    return near.leaves_for(end);
   }
   [[gnu::always_inline]] void start(const T& token, Cycle now, bool cut_through) {
     const Cycle cycles = token.link_cycles;
     Flight flight{now + latency_ + (cut_through ? 0 : cycles - 1), now + cycles, cycles};
     if (!plain_) [[unlikely]]
-      flight = faults_ ? uncertain_flight(now, cycles, cut_through) : crossing_flight(now, cycles, cut_through);
+      flight = near_ ? crossing_flight(now, cycles, cut_through) : uncertain_flight(now, cycles, cut_through);
     free_at_ = flight.link_free;
     wire_->packets.send(flight.arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
@@ -231,10 +246,9 @@ class OutPortOf {
   [[gnu::cold, gnu::noinline]] Flight crossing_flight(Cycle now, Cycle cycles, bool cut_through) {
     NearClock& near = *near_;
     const Cycle edge = std::max(near.to_link.enter(now + near.node_cycles), near.link_free);
-    near.link_free = edge + cycles;
-    near.busy += cycles;
-    const Cycle next = std::max(now + 1, near.leaves_for(near.link_free));
-    return {edge + latency_ + (cut_through ? 0 : cycles - 1), next, 0};
+    Flight flight{edge + latency_ + (cut_through ? 0 : cycles - 1), edge + cycles, cycles};
+    if (faults_) flight = uncertain_flight(edge, cycles, cut_through);
+    return {flight.arrival, std::max(now + 1, moves(near, flight.link_free, flight.busy)), 0};
   }
   /// Out of line, as few links have faults.
   [[gnu::cold, gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {

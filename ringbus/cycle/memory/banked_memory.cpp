@@ -26,8 +26,7 @@ void BankedMemory::run(Cycle end) {
   };
   for (next_ = next(); next_ < end; next_ = next()) {
     const Cycle now = last_step_ = next_;
-    if (samples_.due(now)) [[unlikely]]
-      samples_.until(now, [this](Cycle, std::span<std::uint64_t> row) { row[0] = dram_.served_bytes(); });
+    look_at(now, [this](Cycle, std::span<std::uint64_t> row) { row[0] = dram_.served_bytes(); });
     const DramCycle arrival = dram_.of_engine(now);
     for (std::size_t c = 0; c < clients_.size(); ++c) {
       while (clients_[c].requests->next() <= now) {
@@ -40,7 +39,7 @@ void BankedMemory::run(Cycle end) {
 }
 
 void BankedMemory::close(Cycle end) {
-  dram_.close(dram_.of_engine(end));
+  dram_.close(dram_.of_engine(from_core_.to_network(end)));
   samples_.close(end, [this](Cycle, std::span<std::uint64_t> row) { row[0] = dram_.served_bytes(); });
 }
 

@@ -11,11 +11,10 @@ void Memory::run(Cycle end) {
   for (next_ = next(); next_ < end;) {
     const Cycle now = last_step_ = next_;
     next_ = kNever;
-    if (samples_.due(now)) [[unlikely]]
-      samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) {
-        // Lines that have been asked for are moved without a gap.
-        row[0] = bytes() - (moved_ > at * width_ ? moved_ - at * width_ : 0);
-      });
+    look_at(now, [this](Cycle at, std::span<std::uint64_t> row) {
+      // Lines that have been asked for are moved without a gap.
+      row[0] = bytes() - (moved_ > at * width_ ? moved_ - at * width_ : 0);
+    });
     for (const Client& client : clients_) {
       while (client.requests->next() <= now) {
         moved_ = std::max(moved_, now * width_) + line_bytes_;
@@ -31,7 +30,8 @@ void Memory::run(Cycle end) {
 
 void Memory::close(Cycle end) {
   samples_.close(end, [this, end](Cycle at, std::span<std::uint64_t> row) {
-    row[0] = bytes() - (at < end && moved_ > at * width_ ? moved_ - at * width_ : 0);
+    const std::uint64_t by_now = from_core_.to_network(at) * width_;
+    row[0] = bytes() - (at < end && moved_ > by_now ? moved_ - by_now : 0);
   });
 }
 

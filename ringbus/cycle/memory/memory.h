@@ -17,12 +17,12 @@ class Memory final : public MemoryAgent {
   void run(Cycle end) override;
   void close(Cycle end) override;
 
-  Cycle idle_from() const override { return ceil_div(moved_, width_); }
-  Cycle busy() const override { return ceil_div(bytes(), width_); }
-  double peak_bytes_per_cycle() const override { return static_cast<double>(width_); }
   std::optional<DramUse> dram_use(Cycle) const override { return std::nullopt; }
 
  private:
+  Cycle done_from() const override { return ceil_div(moved_, width_); }
+  Cycle moving() const override { return ceil_div(bytes(), width_); }
+  double width() const override { return static_cast<double>(width_); }
   std::uint64_t bytes() const { return (counts_.lines + counts_.lines_written) * line_bytes_; }
 
   std::uint64_t width_;

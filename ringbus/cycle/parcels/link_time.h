@@ -7,15 +7,18 @@
 
 #include "ringbus/results/counter_samples.h"
 #include "ringbus/results/cycle_result.h"
-#include "ringbus/time/clock.h"
+#include "ringbus/time/clock_ratio.h"
 
 namespace carousel::ringbus::cycle {
 
 /// The time of a link on which parcels travel: one behind the other without a gap, in the order in which they come, as
 /// many in a cycle as fit into the link's width. A packet begins and ends with a cycle.
+///
+/// Cycles are those of the link's clock, but for what is counted of it, which is told in cycles of the resources.
 class LinkTime {
  public:
-  explicit LinkTime(std::uint64_t bytes_per_cycle) : width_(bytes_per_cycle) {}
+  explicit LinkTime(std::uint64_t bytes_per_cycle, const ClockRatio& from_core = {})
+      : width_(bytes_per_cycle), from_core_(from_core) {}
 
   /// What is read over time, at most so often, from now on.
   enum class Counter : std::uint8_t { kBusy, kBytes, kEnd };
@@ -51,13 +54,18 @@ class LinkTime {
   std::uint64_t parcels() const { return parcels_; }
   std::uint64_t bytes() const { return bytes_; }  ///< of parcels
   /// Cycles before `end` in which the link moved something; not before the last of it began.
-  Cycle busy(Cycle end = kNever) const { return busy_to_ <= end ? busy_ : busy_ - std::min(busy_, busy_to_ - end); }
+  Cycle busy(Cycle end = kNever) const {
+    if (from_core_.equal()) return moved(end);
+    return std::min(end, from_core_.before(moved(end == kNever ? kNever : from_core_.to_network(end))));
+  }
   /// What waited for the link.
-  const Occupancy& queue() const { return queue_; }
+  Occupancy queue() const { return {from_core_.before(queue_.packet_cycles), queue_.most}; }
 
  private:
   /// To be called before anything happens at `now`.
   void look_at(Cycle now) {
+    if (!from_core_.equal()) [[unlikely]]
+      now = from_core_.before(now);
     if (samples_.due(now)) [[unlikely]]
       samples_.until(now, [this](Cycle at, std::span<std::uint64_t> row) { read(at, row); });
   }
@@ -65,6 +73,8 @@ class LinkTime {
     row[static_cast<std::size_t>(Counter::kBusy)] = busy(at);
     row[static_cast<std::size_t>(Counter::kBytes)] = bytes_;
   }
+  /// As busy(), by the link's clock.
+  Cycle moved(Cycle end) const { return busy_to_ <= end ? busy_ : busy_ - std::min(busy_, busy_to_ - end); }
   void note(std::uint64_t begin, Cycle ready) {
     const Cycle first = begin / width_, end = ceil_div(taken_, width_);
     busy_ += end - std::min(end, std::max(first, busy_to_));
@@ -77,6 +87,7 @@ class LinkTime {
   }
 
   std::uint64_t width_;
+  ClockRatio from_core_;
   std::uint64_t taken_ = 0;  // up to this byte of time, of which a cycle has width_
   std::uint64_t parcels_ = 0, bytes_ = 0;
   Cycle busy_ = 0, busy_to_ = 0;

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <deque>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "core/config/graph/ring.h"
 #include "core/system/error.h"
+#include "ringbus/cycle/parcels/way_time.h"
 #include "ringbus/topology/graph/routes.h"
 #include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/wire_length.h"
@@ -42,18 +44,17 @@ Nodes nearest_resources(const Graph& graph) {
 }
 
 /// The longest way from any to any, by latency.
-std::string longest_way(const Graph& graph, const Routes& routes, const Nodes& starts, const Nodes& ends) {
-  std::int64_t longest = -1;
+std::string longest_way(const Graph& graph, const Routes& routes, const Nodes& starts, const Nodes& ends,
+                        const MachineClocks& clocks) {
+  std::optional<Cycle> longest;
   std::string text;
   for (const std::uint32_t from : starts)
     for (const std::uint32_t to : ends) {
-      std::int64_t cycles = 0;
-      routes.for_each_link(from, to, [&](std::uint32_t link) {
-        cycles += graph.nodes[graph.links[link].from].drawn->latency_cycles + graph.links[link].latency_cycles;
-      });
-      if (cycles <= longest) continue;
-      longest = cycles;
-      text = fmt::format("{} cycles at most, from {} to {}", cycles, graph.nodes[from].name, graph.nodes[to].name);
+      WayTime way(graph, clocks);
+      routes.for_each_link(from, to, [&](std::uint32_t link) { way.go(graph.links[link]); });
+      if (longest && way.cycles() <= *longest) continue;
+      longest = way.cycles();
+      text = fmt::format("{} cycles at most, from {} to {}", *longest, graph.nodes[from].name, graph.nodes[to].name);
     }
   return text;
 }
@@ -118,7 +119,7 @@ ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes) {
   return plan;
 }
 
-std::string parcel_facts(const ParcelPlan& plan) {
+std::string parcel_facts(const ParcelPlan& plan, const MachineClocks& clocks) {
   if (!plan.any()) return "";
   const Graph& graph = plan.graph;
   const Nodes caches = graph.of_kind(GraphNodeKind::kCache);
@@ -136,10 +137,10 @@ std::string parcel_facts(const ParcelPlan& plan) {
     for (std::uint32_t r = 0; r < graph.resources; ++r)
       if (plan.parts.caches_of[r] == group) served.push_back(r);
     out += fmt::format("ways to {}: {}\n", graph.nodes[plan.parts.caches[group].nodes.front()].name,
-                       longest_way(shapes, routes, served, plan.parts.caches[group].nodes));
+                       longest_way(shapes, routes, served, plan.parts.caches[group].nodes, clocks));
   }
   if (!plan.parts.memories.nodes.empty())
-    out += fmt::format("ways to memory: {}\n", longest_way(shapes, routes, caches, plan.parts.memories.nodes));
+    out += fmt::format("ways to memory: {}\n", longest_way(shapes, routes, caches, plan.parts.memories.nodes, clocks));
   return out;
 }
 

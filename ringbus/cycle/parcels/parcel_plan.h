@@ -7,6 +7,7 @@
 
 #include "core/config/graph/drawn_parts.h"
 #include "core/config/graph/graph.h"
+#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::ringbus {
 
@@ -32,6 +33,8 @@ struct ParcelPlan {
 
   bool any() const { return !links.empty(); }
   const config::Graph::Link& drawn(const Link& link) const { return graph.links[link.link]; }
+  /// The clock of a node.
+  std::int64_t mhz(std::uint32_t node) const { return graph.nodes[node].drawn->mhz; }
   /// The links on which no packet travels, in order.
   std::vector<config::Graph::Link> without_packets() const;
   /// The length of a link in mm, where one between neighbours is `link_mm` long, as wire_length(): from place to place
@@ -49,7 +52,7 @@ struct ParcelPlan {
 /// have not.
 ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes);
 
-/// Lines for people: the parts and the longest ways to them.
-std::string parcel_facts(const ParcelPlan& plan);
+/// Lines for people: the parts and the longest ways to them, in cycles of the resources.
+std::string parcel_facts(const ParcelPlan& plan, const MachineClocks& clocks);
 
 }  // namespace carousel::ringbus

@@ -1,5 +1,6 @@
 #include "ringbus/cycle/parcels/parcel_routes.h"
 
+#include "ringbus/cycle/parcels/way_time.h"
 #include "ringbus/topology/graph/routes.h"
 
 namespace carousel::ringbus::cycle {
@@ -23,14 +24,14 @@ ParcelRoutes::ParcelRoutes(const ParcelPlan& plan)
     find_exits(plan, what, ports);
 }
 
-std::uint64_t ParcelRoutes::cycles(Carried what, std::uint32_t from, std::uint32_t to) const {
-  std::uint64_t sum = 0;
+Cycle ParcelRoutes::cycles(Carried what, std::uint32_t from, std::uint32_t to, const MachineClocks& clocks) const {
+  WayTime way(plan_.graph, clocks);
   for (std::uint32_t at = from; at != to;) {
     const Graph::Link& link = plan_.drawn(plan_.links[out_[at][exit(what, at, to).port]]);
-    sum += static_cast<std::uint64_t>(plan_.graph.nodes[at].drawn->latency_cycles + link.latency_cycles);
+    way.go(link);
     at = link.to;
   }
-  return sum;
+  return way.cycles();
 }
 
 void ParcelRoutes::find_exits(const ParcelPlan& plan, Carried what, const std::vector<std::uint32_t>& ports) {

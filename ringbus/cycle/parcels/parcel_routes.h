@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ringbus/cycle/parcels/parcel_plan.h"
+#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -21,8 +22,8 @@ class ParcelRoutes {
   Exit exit(Carried what, std::uint32_t node, std::uint32_t stop) const {
     return exits_[(static_cast<std::size_t>(what) * nodes_ + node) * nodes_ + stop];
   }
-  /// The cycles that a way takes: the latencies of its links and of the nodes before them.
-  std::uint64_t cycles(Carried what, std::uint32_t from, std::uint32_t to) const;
+  /// The cycles of the resources that a way takes: the latencies of its links and of the nodes before them.
+  Cycle cycles(Carried what, std::uint32_t from, std::uint32_t to, const MachineClocks& clocks) const;
   /// The links that leave or enter a node, by their places in the plan; those that leave are in the order of ports.
   const std::vector<std::uint32_t>& out(std::uint32_t node) const { return out_[node]; }
   const std::vector<std::uint32_t>& in(std::uint32_t node) const { return in_[node]; }

@@ -5,12 +5,12 @@
 
 namespace carousel::ringbus::cycle {
 
-SharedLink::SharedLink(const Topology& topology, std::uint32_t wire, const Ends& ends)
+SharedLink::SharedLink(const Topology& topology, std::uint32_t wire, const Ends& ends, const ClockRatio& from_core)
     : topology_(topology),
       from_(topology.wires()[wire].from),
       ends_(ends),
       latency_(far_latency(topology.wires()[wire].latency_cycles)),
-      time_(static_cast<std::uint64_t>(topology.wires()[wire].bytes_per_cycle)) {}
+      time_(static_cast<std::uint64_t>(topology.wires()[wire].bytes_per_cycle), from_core) {}
 
 Cycle SharedLink::next() const {
   return std::min({ends_.near->packets.next_after(now_), ends_.parcels_in->next(), ends_.far->packets.next_return()});

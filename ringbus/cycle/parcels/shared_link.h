@@ -15,7 +15,7 @@ namespace carousel::ringbus::cycle {
 /// A link that packets and parcels share. It stands a cycle behind the link's near end and gives out the link's time in
 /// the order in which they come, in turns where both come at once. Packets alone travel as if it were not there. They
 /// have credits as on any link, which parcels neither need nor hold; so a packet never waits for a parcel but for the
-/// time that this occupies the link, and the other way round.
+/// time that this occupies the link, and the other way round. It goes by the link's clock.
 class SharedLink final : public Agent {
  public:
   /// The two parts of the link's channels, before and behind this agent.
@@ -27,8 +27,8 @@ class SharedLink final : public Agent {
   /// search for the bottleneck may ask for one.
   static Cycle far_latency(std::int64_t latency) { return static_cast<Cycle>(std::max<std::int64_t>(2, latency)) - 1; }
 
-  /// `wire`: the topology's number of the link. Keeps a reference to the topology.
-  SharedLink(const Topology& topology, std::uint32_t wire, const Ends& ends);
+  /// `wire`: the topology's number of the link. `from_core`: to its clock. Keeps a reference to the topology.
+  SharedLink(const Topology& topology, std::uint32_t wire, const Ends& ends, const ClockRatio& from_core = {});
 
   Cycle next() const override;
   void run(Cycle end) override;

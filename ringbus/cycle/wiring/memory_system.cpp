@@ -18,9 +18,14 @@ Channel<std::uint64_t>& channel(std::vector<std::unique_ptr<Channel<std::uint64_
 void run_to_rest(const std::vector<Agent*>& agents) {
   for (;;) {
     Agent* first = nullptr;
-    for (Agent* agent : agents)
-      if (first == nullptr || agent->next() < first->next()) first = agent;
-    if (first == nullptr || first->next() == kNever) return;
+    Cycle earliest = kNever;  // by the fastest clock, of which anything that is sent takes a cycle
+    for (Agent* agent : agents) {
+      const Cycle next = agent->next();
+      if (next == kNever) continue;
+      const Cycle at = agent->clock().floor_to_network(next);
+      if (at < earliest) first = agent, earliest = at;
+    }
+    if (first == nullptr) return;
     first->run(first->next() + 1);
   }
 }
@@ -29,7 +34,7 @@ void run_to_rest(const std::vector<Agent*>& agents) {
 
 MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
                            const AgentNumbers& agents, const MemoryConfig& config,
-                           const std::vector<MemoryConfig>& own_configs, std::int64_t clock_mhz,
+                           const std::vector<MemoryConfig>& own_configs, const MachineClocks& clocks,
                            const std::vector<ShapeCache::Client>& clients,
                            const std::vector<std::vector<ShapeCache::Client>>& others, const DrawnAskers* drawn)
     : shared_by_(static_cast<std::size_t>(config.shared_by)) {
@@ -64,10 +69,12 @@ MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const st
     }
   }
   if (drawn != nullptr && !drawn->memories.empty()) {
-    for (const std::vector<MemoryAgent::Client>& askers : drawn->memories)
-      memories_.push_back(make_memory(config, clock_mhz, askers));
+    for (const DrawnAskers::AtMemory& memory : drawn->memories) {
+      memories_.push_back(make_memory(config, clocks.of(memory.mhz), memory.askers));
+      memories_.back()->tell_time(clocks.from_core(memory.mhz));
+    }
   } else {
-    memories_.push_back(make_memory(config, clock_mhz, to_memory()));
+    memories_.push_back(make_memory(config, clocks.of(0), to_memory()));
   }
   const auto width = static_cast<std::uint64_t>(peak_bytes_per_cycle());
   list.set_width(kinds.lines, width);

@@ -13,6 +13,7 @@
 #include "ringbus/cycle/wiring/agent_numbers.h"
 #include "ringbus/results/class_use.h"
 #include "ringbus/time/channel_list.h"
+#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -22,19 +23,22 @@ struct DrawnAskers {
     std::vector<ShapeCache::Client> resources;
     std::vector<ShapeCache::OwnCache> own_caches;
   };
+  struct AtMemory {
+    std::int64_t mhz = 0;  ///< of its clock; 0: that of the resources
+    std::vector<MemoryAgent::Client> askers{};
+  };
   std::vector<AtCache> caches;
-  std::vector<std::vector<MemoryAgent::Client>> memories;  ///< empty: one memory, beside the links
+  std::vector<AtMemory> memories;  ///< empty: one memory, beside the links
 };
 
 /// The caches, each shared by some neighbouring resources, and the memory behind them; or as they are drawn.
 class MemorySystem {
  public:
   /// `clients` by resource, as `own_configs`, which their own caches follow. `others`: by L2, those that ask it beside
-  /// resources. `clock_mhz`: engine.clock_mhz. With
-  /// own caches there are kinds of messages for them.
+  /// resources. With own caches there are kinds of messages for them.
   MemorySystem(ChannelList& list, const MemoryKinds& kinds, const std::optional<OwnCacheKinds>& own_kinds,
                const AgentNumbers& agents, const MemoryConfig& config, const std::vector<MemoryConfig>& own_configs,
-               std::int64_t clock_mhz, const std::vector<ShapeCache::Client>& clients,
+               const MachineClocks& clocks, const std::vector<ShapeCache::Client>& clients,
                const std::vector<std::vector<ShapeCache::Client>>& others, const DrawnAskers* drawn = nullptr);
   static std::size_t shared_caches(const MemoryConfig& config, std::int64_t resources) {
     return static_cast<std::size_t>((resources - 1) / config.shared_by + 1);

@@ -17,22 +17,23 @@ Network::Network(ChannelList& list, const Machine& machine, const TopologyConfig
   for (std::uint32_t i = 0; i < topology.wires().size(); ++i) {
     const Topology::Wire& wire = topology.wires()[i];
     const auto latency = static_cast<Cycle>(wire.latency_cycles);
+    const ClockRatio to_receiver = clocks_.between(wire.mhz, topology.mhz(wire.to)),
+                     to_sender = clocks_.between(wire.mhz, topology.mhz(wire.from));
     far_.emplace_back();
     if (const auto agent = shared.find(i); agent != shared.end()) {
       if (!onwards)
         onwards = list.carry({"packets on shared links", "near ends", "far ends", "links",
                               static_cast<std::uint64_t>(config.link.bytes_per_cycle)});
       wires_.push_back(std::make_unique<Wire>(list.at(packets, {wire.from.value, agent->second, 1})));
+      wires_.back()->packets.cross({}, to_sender);
       far_.back() = std::make_unique<Wire>(
           list.at(*onwards, {agent->second, wire.to.value, SharedLink::far_latency(wire.latency_cycles)}));
+      far_.back()->packets.cross(to_receiver, {});
     } else {
       wires_.push_back(std::make_unique<Wire>(list.at(packets, {wire.from.value, wire.to.value, latency})));
-      wires_.back()->packets.cross(clocks_.between(wire.mhz, topology.mhz(wire.to)),
-                                   clocks_.between(wire.mhz, topology.mhz(wire.from)));
+      wires_.back()->packets.cross(to_receiver, to_sender);
     }
-    clocks_.use(wire.mhz);
   }
-  clocks_.use(0);
   for (std::uint32_t hub = 0; hub < topology.hubs().size(); ++hub) {
     const ResourceId node(static_cast<std::uint32_t>(topology.resources()) + hub);
     NodePorts ports = ports_at(node);
@@ -44,7 +45,6 @@ Network::Network(ChannelList& list, const Machine& machine, const TopologyConfig
       hubs_.push_back(make_hub(hub, topology, machine.packets, std::move(ports.in), std::move(ports.out)));
     }
     hubs_.back()->tell_time(clocks_.from_core(topology.mhz(node)));
-    clocks_.use(topology.mhz(node));
   }
 }
 
@@ -64,13 +64,13 @@ Network::NodePorts Network::ports_at(ResourceId node) const {
   for (const std::uint32_t i : topology.ports(node).in) {
     const Topology::Wire& wire = topology.wires()[i];
     const auto credit = static_cast<Cycle>(wire.credit_cycles);
+    const Cycle back = far_[i] ? SharedLink::far_latency(wire.latency_cycles) : latency(i);
     if (wire.mhz != topology.mhz(node)) {
       const FarClock far_clock{clocks_.between(topology.mhz(node), wire.mhz), credit};
-      ports.in.push_back({&far(i), latency(i), std::make_shared<const FarClock>(far_clock)});
+      ports.in.push_back({&far(i), back, std::make_shared<const FarClock>(far_clock)});
       continue;
     }
-    ports.in.push_back(
-        {&far(i), (far_[i] ? SharedLink::far_latency(wire.latency_cycles) : latency(i)) + credit, nullptr});
+    ports.in.push_back({&far(i), back + credit, nullptr});
   }
   for (const std::uint32_t i : topology.ports(node).out) {
     const Topology::Wire& wire = topology.wires()[i];
@@ -80,9 +80,17 @@ Network::NodePorts Network::ports_at(ResourceId node) const {
     OutPort& out = ports.out.emplace_back(*wires_[i], away, static_cast<std::uint32_t>(wire.depth),
                                           wire.places > 0 ? wire.places : places);
     if (crosses) out.cross(clocks_.between(topology.mhz(node), wire.mhz), node_cycles);
-    if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, away));
+    if (faults_.links.any()) out.fail(LinkFaultTimer(faults_.links, faults_.seed, i, away, crossings(wire, away)));
   }
   return ports;
+}
+
+Cycle Network::crossings(const Topology::Wire& wire, Cycle latency) const {
+  const auto there_and_back = [&](ResourceId end, Cycle at) {
+    const std::int64_t mhz = machine_.topology.mhz(end);
+    return clocks_.between(mhz, wire.mhz).enter(clocks_.between(wire.mhz, mhz).enter(at));
+  };
+  return there_and_back(wire.from, there_and_back(wire.to, latency) + latency) - 2 * latency;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -22,7 +22,7 @@ class Network {
   using SharedWires = std::map<std::uint32_t, std::uint32_t>;
 
   /// Keeps a reference to the machine. `topology`: of its configuration. `contexts`: packets that a resource may have
-  /// in test at once, by resource. Nodes have the topology's numbers in the list.
+  /// in test at once, by resource. `clocks`: with all that parts use. Nodes have the topology's numbers in the list.
   Network(ChannelList& list, const Machine& machine, const TopologyConfig& topology, const FaultsConfig& faults,
           std::vector<std::int64_t> contexts, MachineClocks clocks, const SharedWires& shared = {});
 
@@ -42,6 +42,9 @@ class Network {
   Wire& near(std::size_t number) const { return *wires_[number]; }
 
  private:
+  /// The time over a link and back that its clocks add to the latency both ways, in its cycles.
+  Cycle crossings(const Topology::Wire& wire, Cycle latency) const;
+
   const Machine& machine_;
   FaultsConfig faults_;
   std::vector<std::int64_t> contexts_;  // by resource

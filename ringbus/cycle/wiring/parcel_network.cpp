@@ -26,6 +26,7 @@ ParcelNetwork::ParcelNetwork(ChannelList& list, const ParcelPlan& plan, const Ag
       plan_(plan),
       numbers_(agents),
       topology_(topology),
+      clocks_(network.clocks()),
       memory_(memory),
       line_bytes_(fetched_bytes(memory)),
       routes_(plan),
@@ -44,11 +45,17 @@ void ParcelNetwork::make_links(const Network& network) {
     const Graph::Link& link = plan_.drawn(plan_.links[i]);
     const auto latency = static_cast<Cycle>(link.latency_cycles);
     const std::uint32_t from = numbers_.relay(link.from), to = numbers_.relay(link.to);
+    const ClockRatio to_link = clocks_.between(plan_.mhz(link.from), link.mhz),
+                     to_receiver = clocks_.between(link.mhz, plan_.mhz(link.to)),
+                     from_core = clocks_.from_core(link.mhz);
     to_shared_.emplace_back();
     const std::uint32_t wire = plan_.links[i].wire;
     if (wire == ParcelPlan::kNone) {
       Channel<Parcel>& channel = this->channel(links_, over_links_, {from, to, latency});
-      out[link.from].emplace_back(channel, latency, static_cast<std::uint64_t>(link.bytes_per_cycle));
+      channel.cross(to_receiver, {});
+      out[link.from].emplace_back(
+          channel, latency, to_link,
+          std::make_unique<LinkTime>(static_cast<std::uint64_t>(link.bytes_per_cycle), from_core));
       times_.push_back(out[link.from].back().time());
       continue;
     }
@@ -57,9 +64,11 @@ void ParcelNetwork::make_links(const Network& network) {
     to_shared_.back() = std::make_unique<Channel<Parcel>>(list_.at(*to_shared_links_, {from, agent, 1}));
     Channel<Parcel>& channel =
         this->channel(links_, over_links_, {agent, to, SharedLink::far_latency(link.latency_cycles)});
-    out[link.from].emplace_back(*to_shared_.back(), 1, 0);
+    channel.cross(to_receiver, {});
+    out[link.from].emplace_back(*to_shared_.back(), 1, to_link);
     shared_.push_back(std::make_unique<SharedLink>(
-        topology_, wire, SharedLink::Ends{&network.near(wire), &network.far(wire), to_shared_.back().get(), &channel}));
+        topology_, wire, SharedLink::Ends{&network.near(wire), &network.far(wire), to_shared_.back().get(), &channel},
+        from_core));
     times_.push_back(&shared_.back()->time());
   }
   for (std::uint32_t node = 0; node < graph.nodes.size(); ++node) {
@@ -124,8 +133,8 @@ DrawnAskers ParcelNetwork::askers() {
       add_cache(cache++, group, bank, out);
   const Banks& memories = plan_.parts.memories;
   for (std::size_t m = 0; m < memories.nodes.size(); ++m) {
-    std::vector<MemoryAgent::Client>& askers = out.memories.emplace_back();
     const std::uint32_t node = memories.nodes[m];
+    std::vector<MemoryAgent::Client>& askers = out.memories.emplace_back(DrawnAskers::AtMemory{plan_.mhz(node)}).askers;
     std::uint32_t door = 0;
     for (std::size_t group = 0; group < plan_.parts.caches.size(); ++group)
       for (const std::uint32_t cache_node : plan_.parts.caches[group].nodes) {
@@ -193,7 +202,8 @@ Cycle ParcelNetwork::way_to_memory(std::uint32_t resource) const {
   if (plan_.parts.caches.empty()) return 0;
   if (const auto& of = plan_.graph.manager_of; !of.empty() && of[resource] == resource) return 0;  // it reads no shapes
   const auto there_and_back = [this](std::uint32_t from, std::uint32_t to) {
-    return routes_.cycles(Carried::kShapes, from, to) + routes_.cycles(Carried::kShapes, to, from) + 2 * kDoorCycles;
+    return routes_.cycles(Carried::kShapes, from, to, clocks_) + routes_.cycles(Carried::kShapes, to, from, clocks_) +
+           2 * kDoorCycles;
   };
   Cycle longest = 0;
   for (const std::uint32_t cache : plan_.parts.caches[plan_.parts.caches_of[resource]].nodes) {
@@ -212,9 +222,18 @@ std::vector<Agent*> ParcelNetwork::agents() const {
   return out;
 }
 
+void ParcelNetwork::run_by_clocks() const {
+  for (std::uint32_t node = 0; node < relays_.size(); ++node)
+    relays_[node]->run_by(clocks_.to_fastest(plan_.mhz(node)));
+  std::size_t shared = 0;
+  for (const ParcelPlan::Link& link : plan_.links)
+    if (link.wire != ParcelPlan::kNone) shared_[shared++]->run_by(clocks_.to_fastest(plan_.drawn(link).mhz));
+}
+
 Cycle ParcelNetwork::quiet_from() const {
   Cycle last = 0;
-  for (const auto& relay : relays_) last = std::max(last, relay->last_step());
+  for (std::uint32_t node = 0; node < relays_.size(); ++node)
+    last = std::max(last, clocks_.from_core(plan_.mhz(node)).to_core(relays_[node]->last_step()));
   return last;
 }
 

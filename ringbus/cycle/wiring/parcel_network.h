@@ -44,7 +44,9 @@ class ParcelNetwork {
   Cycle way_to_memory(std::uint32_t resource) const;
   /// Agents over which messages travel.
   std::vector<Agent*> agents() const;
-  /// Nothing has happened on the links since.
+  /// Each by its own clock. Before the start.
+  void run_by_clocks() const;
+  /// Nothing has happened on the links since, by the clock of the resources.
   Cycle quiet_from() const;
   /// The use of a link of the plan by its number there.
   const LinkTime& time_of(std::size_t link) const { return *times_[link]; }
@@ -70,6 +72,7 @@ class ParcelNetwork {
   const ParcelPlan& plan_;
   AgentNumbers numbers_;
   const Topology& topology_;
+  MachineClocks clocks_;
   MemoryConfig memory_;
   std::uint64_t line_bytes_;
   ParcelRoutes routes_;

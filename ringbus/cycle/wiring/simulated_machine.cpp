@@ -53,6 +53,15 @@ AgentNumbers agent_numbers(const Topology& topology, const MemoryConfig& memory,
   return out;
 }
 
+/// With all by which parts of the machine go.
+MachineClocks machine_clocks(const Config& config) {
+  MachineClocks out(config.engine.clock_mhz, config.clocks.synchroniser_cycles);
+  out.use(0);
+  for (const GraphNode& node : config.topology.nodes) out.use(node.mhz);
+  for (const GraphLink& link : config.topology.links) out.use(link.mhz);
+  return out;
+}
+
 /// Programs read surfaces while they run, and Gaussians have none.
 bool keeps_surfaces(const Config& config, const accel::Accel& accel) {
   return config.memory.surfaces == MemoryConfig::ShadingData::kMemory && !config.shading.program.any() &&
@@ -138,8 +147,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
                         : nullptr),
       plan_(plan_parcels(config.topology, config.memory.line_bytes)),
       numbers_(agent_numbers(shared_.topology, config.memory, plan_)),
-      network_(channels_, shared_, config.topology, config.faults, contexts_of(config),
-               MachineClocks(config.engine.clock_mhz, config.clocks.synchroniser_cycles),
+      network_(channels_, shared_, config.topology, config.faults, contexts_of(config), machine_clocks(config),
                ParcelNetwork::shared_wires(plan_, numbers_)),
       kinds_(machine_kinds(channels_, config.topology.link, config.memory, has_ray_data(config, accel),
                            has_distributor(config) ? &config.testers.distributor : nullptr,
@@ -215,7 +223,7 @@ SimulatedMachine::SimulatedMachine(const Config& config, const accel::Accel& acc
   if (parcels_) askers = parcels_->askers();
   memory_ =
       std::make_unique<MemorySystem>(channels_, kinds_.memory, kinds_.own_caches, numbers_, config.memory, own_memory,
-                                     config.engine.clock_mhz, cache_clients, others, parcels_ ? &askers : nullptr);
+                                     network_.clocks(), cache_clients, others, parcels_ ? &askers : nullptr);
   if (parcels_) {
     parcels_->join(*memory_);
     parcels_->sample(observed.samples);
@@ -262,6 +270,10 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
     for (Agent* agent : part) agent->run_by(clocks.to_fastest(0));
   for (std::uint32_t h = 0; h < network_.hubs().size(); ++h)
     network_.hubs()[h]->run_by(clocks.to_fastest(shared_.topology.mhz(hub_node(h))));
+  if (parcels_) parcels_->run_by_clocks();
+  const std::vector<std::uint32_t>& memories = plan_.parts.memories.nodes;
+  for (std::size_t m = 0; m < memories.size(); ++m)
+    memory_->memories()[m]->run_by(clocks.to_fastest(plan_.mhz(memories[m])));
   return parts;
 }
 

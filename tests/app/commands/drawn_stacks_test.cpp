@@ -114,6 +114,10 @@ TEST(DrawnStacks, CheckSaysPartsAndVerdict) {
   EXPECT_THAT(check.out, HasSubstr("# parts: 2 caches, 1 memories, 1 shading, 38 links that carry no packets\n"));
   EXPECT_THAT(check.out, HasSubstr("# ways to a: 4 cycles at most, from left[0] to a\n"));
   EXPECT_THAT(check.out, HasSubstr("# deadlock: impossible. independent: every resource traces its own rays"));
+  // 4 cycles of 2 ns, behind a synchroniser of two of them and before one of two of 1 ns.
+  const Outcome slow = program.run({"check", "clusters.yaml", "--set", "clocks.noc=500"});
+  ASSERT_EQ(slow.status, 0) << slow.err;
+  EXPECT_THAT(slow.out, HasSubstr("# ways to a: 14 cycles at most, from left[0] to a\n"));
   const Outcome json = program.run({"check", "clusters.yaml", "--json"});
   ASSERT_EQ(json.status, 0) << json.err;
   EXPECT_EQ(Json::parse(json.out)["ignored_keys"], Json::array()) << json.out;
@@ -160,6 +164,19 @@ TEST(DrawnStacks, TheTwinOfADrawingIsTheDrawingWithoutPackets) {
   const Json twin = report_of(program, "packets.yaml", {"testers.simt={warp: 32, warps: 2}"});
   EXPECT_EQ(json["runs"][json["seeds"].get<std::size_t>()]["machine"], "twin");
   EXPECT_EQ(json["runs"][json["seeds"].get<std::size_t>()]["cycles"], twin["engine"]["cycles"]);
+
+  // Clocks stay, but for one of packets alone.
+  std::vector<std::string> other = more;
+  for (const std::string set : {"clocks={noc: 1500, slow: 500, ring: 300}", "topology.links.2.clock=slow",
+                                "topology.links.5={ring: 'left[*], right[*]', clock: ring}"})
+    other.insert(other.end(), {"--set", set});
+  other.insert(other.end(), {"--out", "c"});
+  EXPECT_THAT(versus("packets.yaml", other).out, HasSubstr("\nthe twin has the drawing of this machine"));
+  const Json clocks = Json::parse(program.read("c/versus.json"));
+  EXPECT_EQ(clocks["runs"][clocks["seeds"].get<std::size_t>()]["cycles"],
+            report_of(program, "clusters.yaml",
+                      {"clocks={noc: 1500, slow: 500}", "topology.links.2.clock=slow",
+                       "testers.simt={warp: 32, warps: 2}"})["engine"]["cycles"]);
 
   const Outcome processes = versus(CAROUSEL_SOURCE_DIR "/configs/packet_processes.yaml",
                                    {"--no-search", "--set", "image={width: 12, height: 8, samples: 1, max_depth: 1}",

@@ -173,6 +173,14 @@ inline std::vector<KeyRow> network_key_rows() {
         "clocks={slow: 700}"},
        {"[{name: r, count: 4}, {name: x, kind: router, clock: slow}]"}},
       {"topology.nodes",
+       kTerrain,
+       {"topology={shape: graph, nodes: [{name: r, count: 4}, {name: l2, kind: cache}, {name: d, kind: memory}], "
+        "links: "
+        "[{ring: 'r[*]'}, {from: 'r[*]', to: l2, both: true, carries: [shapes]}, {from: l2, to: d, both: true, clock: "
+        "slow, carries: [shapes]}]}",
+        "clocks={slow: 700}"},
+       {"[{name: r, count: 4}, {name: l2, kind: cache}, {name: d, kind: memory, clock: slow}]"}},
+      {"topology.nodes",
        kTraffic,
        {"topology={shape: graph, nodes: [{name: r, count: 4}], links: [{line: 'r[*]', both: true, clock: slow}]}",
         "clocks={slow: 700}"},

@@ -60,9 +60,9 @@ const std::string kClockOfRing = kTraffic +
 const std::string kResourceClock =
     "scene: {builtin: cornell}\nclocks: {slow: 500}\ntopology: {shape: graph, nodes: "
     "[{name: r, count: 3, clock: slow}], links: [{ring: 'r[*]'}]}\n";
-const std::string kCarriedClock =
+const std::string kCacheClock =
     "scene: {builtin: cornell}\nclocks: {slow: 500}\ntopology: {shape: graph, nodes: "
-    "[{name: r, count: 3}, {name: c, kind: cache}], links: [{ring: 'r[*]', clock: slow}, "
+    "[{name: r, count: 3}, {name: c, kind: cache, clock: slow}], links: [{ring: 'r[*]'}, "
     "{from: 'r[*]', to: c, both: true, carries: [shapes]}]}\n";
 const std::string kNoRing = kTraffic + three("{line: 'r[*]', both: true, stops: {rule: slots}}");
 const std::string kDeep = kTraffic + three(kSlots + ", depth: 4}");
@@ -152,8 +152,10 @@ INSTANTIATE_TEST_SUITE_P(
                   "topology.nodes.0.clock: a stop goes by the clock of its ring; expected one of 1000 MHz"},
         BadConfig{"ClockOfAResource", kResourceClock.c_str(),
                   "topology.nodes.0.clock: a resource goes by the clock of the run"},
-        BadConfig{"ClockOfALinkForShapes", kCarriedClock.c_str(),
-                  "topology.links.1.carries: a drawing that carries more than packets has one clock yet"},
+        BadConfig{
+            "ClockOfACache", kCacheClock.c_str(),
+            "topology.nodes.1.clock: a cache goes by the clock of the run, in whose cycles its parts are counted; "
+            "expected core, or a router or memory, or workload: traffic; found slow"},
         BadConfig{"ClockOfAShape", kShapeClock.c_str(), "clocks.noc: only a graph has a clock of its own"}),
     [](const auto& bad) { return std::string(bad.param.name); });
 

@@ -118,11 +118,6 @@ INSTANTIATE_TEST_SUITE_P(
                  "test.yaml:7:10: topology.links: there is no way from r[3] to l2 over links that carry shapes"},
         BadStack{"LooseNode", machine(", {name: x, kind: router}" + kCache, kToCache),
                  "test.yaml:6:32: topology.nodes.1: x has no link"},
-        BadStack{"Clock",
-                 machine(kCache, "{from: 'r[*]', to: l2, both: true, carries: [shapes], clock: slow}",
-                         "clocks: {slow: 500}\n"),
-                 "topology.links.0.carries: a drawing that carries more than packets has one clock yet; expected equal "
-                 "clocks"},
         BadStack{"NoCache", machine("", "{ring: 'r[*]', carries: [shapes]}"),
                  "test.yaml:7:35: topology.links.0.carries: nothing of the kind shapes travels; expected a node of the "
                  "kind cache, or links without them"},

@@ -171,7 +171,7 @@ TEST(Memory, TakesItsLatencyAndTheTimeToMoveALine) {
   EXPECT_EQ(answers.take(), 7u);
   EXPECT_EQ(answers.next(), 101u + 8);
   EXPECT_EQ(answers.take(), 8u);
-  EXPECT_EQ(memory.busy(), 8u);
+  EXPECT_EQ(memory.counts().busy, 8u);
   EXPECT_EQ(memory.next(), kNever);
 }
 

@@ -27,7 +27,7 @@ TEST(DramBandwidth, CompletesLinesByTheByte) {
       EXPECT_EQ(answers.next(), 101 + ceil_div((line + 1) * 64, width)) << width;
       EXPECT_EQ(answers.take(), line);
     }
-    EXPECT_EQ(memory.busy(), ceil_div(50 * 64, width));
+    EXPECT_EQ(memory.counts().busy, ceil_div(50 * 64, width));
     EXPECT_EQ(memory.counts().lines, 50u);
   }
 }
