@@ -174,7 +174,7 @@ TEST(DrawnStacks, TheTwinOfADrawingIsTheDrawingWithoutPackets) {
   EXPECT_THAT(versus("packets.yaml", other).out, HasSubstr("\nthe twin has the drawing of this machine"));
   const Json clocks = Json::parse(program.read("c/versus.json"));
   EXPECT_EQ(clocks["runs"][clocks["seeds"].get<std::size_t>()]["cycles"],
-            report_of(program, "clusters.yaml",
+            report_of(program, "packets.yaml",
                       {"clocks={noc: 1500, slow: 500}", "topology.links.2.clock=slow",
                        "testers.simt={warp: 32, warps: 2}"})["engine"]["cycles"]);
 
