@@ -223,10 +223,16 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   judged.cold_caches = report::ColdCaches{judged.limits, reads.reads, reads.first};
   const auto memory = std::find_if(judged.gains.begin(), judged.gains.end(),
                                    [&](const report::BottleneckGain& gain) { return gain.name == judged.limits; });
-  for (const report::BottleneckGain& gain : judged.gains)
+  std::vector<ringbus::WarmGain> others;
+  for (const report::BottleneckGain& gain : judged.gains) {
+    if (ringbus::gains_of_cold_caches(gain.name)) continue;
+    others.push_back({gain.gain, gain.low});
     if (judged.cold_caches->instead.empty() && gain.together == 1 && worth_naming(gain.gain, gain.low) &&
-        gain.high >= memory->gain && !ringbus::gains_of_cold_caches(gain.name))
+        gain.high >= memory->gain)
       judged.cold_caches->instead = gain.name;
+  }
+  if (ringbus::best_when_warm({memory->gain, memory->low}, reads.first_share(), others))
+    judged.cold_caches->instead = memory->name;
   return report::judge_gains(std::move(judged));
 }
 

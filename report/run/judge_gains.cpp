@@ -17,6 +17,13 @@ const BottleneckGain& named_cold(const Bottleneck& b) {
                        [&](const BottleneckGain& gain) { return gain.name == b.cold_caches->named; });
 }
 
+std::string cold_text(const Bottleneck& b) {
+  if (!b.cold_caches) return "";
+  return fmt::format(
+      "; {:.0f} % of the lines that memory reads are read for the first time, and {} gains less in a larger picture",
+      100 * ratio(b.cold_caches->first, b.cold_caches->reads), b.cold_caches->named);
+}
+
 std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (!b.complete) return "not found out: the search was interrupted";
   if (const auto& small = b.frame_too_small; small && small->search)
@@ -54,17 +61,12 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
       if (shown < kShown && std::find(b.rivals.begin(), b.rivals.end(), gain.name) != b.rivals.end())
         text += fmt::format("{} {} with {}", shown++ == 0 ? "" : ",", gain.name, gain_text(gain));
     if (b.rivals.size() > shown) text += fmt::format(" and {} more", b.rivals.size() - shown);
-    if (b.cold_caches)
-      text += fmt::format(
-          "; {:.0f} % of the lines that memory reads are read for the first time, and {} gains less in a "
-          "larger picture",
-          100 * ratio(b.cold_caches->first, b.cold_caches->reads), b.cold_caches->named);
-    return text;
+    return text + cold_text(b);
   }
   const auto next = std::find_if(b.gains.begin(), b.gains.end(),
                                  [&](const auto& gain) { return &gain != named && gain.together == 1; });
   if (next != b.gains.end()) text += fmt::format(", next is {} with {}", next->name, gain_text(*next));
-  return text;
+  return text + cold_text(b);
 }
 
 }  // namespace

@@ -94,7 +94,9 @@ void describe(V& v, const ColdCaches& r) {
   v.field("reads", r.reads, "lines", "lines read from memory between fill and drain");
   v.field("first", r.first, "lines", "those that had not been read before: a larger frame has hardly more of them");
   v.field("instead", r.instead, "",
-          "class that is named instead, since it is not of the way to memory and may gain as much; empty if none may");
+          "class that is named all the same: one that is not of the way to memory and may gain as much, or `named` "
+          "where it "
+          "would gain most without first reads; empty if none is");
 }
 
 /// A stretch of the first pilot in which one class of parts gains most.

@@ -5,6 +5,7 @@
 
 #include "core/system/error.h"
 #include "ringbus/cycle/progress_log.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
 #include "ringbus/cycle/wiring/byte_ledger.h"
 #include "ringbus/cycle/wiring/machine_energy.h"
 #include "ringbus/cycle/wiring/machine_series.h"
@@ -200,6 +201,7 @@ class CycleRun {
       c.cached_lines.push_back(cache->lines());
       if (!machine_.parts().ahead_at(c.caches.size() - 1).empty()) c.fetched_ahead.push_back(cache->ahead());
     }
+    for (const auto& resource : machine_.resources()) c.buffered.push_back(resource->shape_buffer().kept());
     for (const auto& cache : machine_.memory().own_caches())
       (c.own_caches ? *c.own_caches : c.own_caches.emplace()) += cache->statistics();
     c.parts = machine_.parts().counts();

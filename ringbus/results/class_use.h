@@ -28,13 +28,29 @@ struct ProgressSample {
 /// Lines of a machine's caches, a list a cache, the oldest of a set first.
 using CacheLines = std::vector<std::vector<std::uint64_t>>;
 
-/// Lines that a machine's caches hold before it starts, so that a pilot has the frame's share of first misses: a part
-/// of those that they held at the end of the frame's run, drawn line by line. The rest are those that they held at its
-/// start, if any; so a line that they held at both times is there.
+/// Shapes that the resources' shape buffers hold, a list a resource, those that were used last first.
+struct BufferedShapes {
+  std::uint64_t address = 0;
+  std::uint32_t bytes = 0;
+  friend bool operator==(const BufferedShapes&, const BufferedShapes&) = default;
+};
+using BufferShapes = std::vector<std::vector<BufferedShapes>>;
+
+/// What a machine's caches and shape buffers hold before it starts, so that a pilot has the frame's share of first
+/// misses: a part of what they held at the end of the frame's run, drawn line by line. The rest are the lines that
+/// caches held at its start, if any; so a line that they held at both times is there. Shape buffers were empty then.
 struct WarmCaches {
   const CacheLines* lines = nullptr;  ///< at the end; null: the caches are cold
   double part = 0;
-  const CacheLines* start = nullptr;  ///< null: they were cold
+  const CacheLines* start = nullptr;      ///< null: they were cold
+  const BufferShapes* buffers = nullptr;  ///< at the end; null: they are empty
+
+  /// Where the draw of a line or address falls, from 0 to 1. It is there at the start if that is below `part`.
+  static double drawn(std::uint64_t line) {
+    const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull,
+                        at = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
+    return static_cast<double>(at >> 11) * 0x1p-53;
+  }
 };
 
 }  // namespace carousel::ringbus::cycle

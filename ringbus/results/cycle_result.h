@@ -144,6 +144,7 @@ struct CycleResult {
   PartCounts<Parts> parts;
   std::optional<CacheCounts> own_caches;                 ///< sum over resources, if they have caches of their own
   std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
+  BufferShapes buffered;                                 ///< by resource, at the end
   MemoryCounts memory;                                   ///< of all memories
   std::uint64_t first_reads = 0;                         ///< lines read from memory that had not been read before
   std::size_t memories = 1;

@@ -40,6 +40,7 @@ class Search {
     what_ifs_ = what_ifs(config_, accel_);
     out_.gains.resize(what_ifs_.size());
     cold_ = cold(*run.result.cycle, slots_of(config_));
+    fixed_work_ = work_is_fixed(config_, *run.result.cycle);
   }
 
   Bottleneck search() {
@@ -79,7 +80,8 @@ class Search {
 
   /// The most that a class may gain by the run's ledger, which is not that of a machine in which a resource stops.
   double most(std::size_t i) const {
-    return stops_ ? std::numeric_limits<double>::infinity() : most_gain(*run_.result.cycle, what_ifs_[i].name());
+    return stops_ ? std::numeric_limits<double>::infinity()
+                  : most_gain(*run_.result.cycle, what_ifs_[i].name(), fixed_work_);
   }
 
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
@@ -109,7 +111,7 @@ class Search {
   void simulate_base(std::size_t others) {
     if (base_is_the_run()) return;
     const std::uint64_t draws = cold_ ? 1 : 4;  // no part of a cold frame is like it
-    constexpr double kLike = 0.05, kLittle = 0.25;
+    constexpr double kLittle = 0.25;
     std::uint64_t taken = 0;
     for (std::uint64_t draw = 0; draw < draws; ++draw) {
       pilots_.take(draw);
@@ -181,7 +183,7 @@ class Search {
                        [](const auto& a, const auto& b) { return a.second.value > b.second.value; });
       // A group that gains more than any class that was looked at alone leaves nothing to name.
       budget = !several.empty() && several.front().second.value > greatest_alone(out_.gains) ? kAtMost : kWanted;
-      if (cold_) budget = kWithFrame - 1.05;  // which may follow
+      if (cold_) budget = kWithFrame - 1.05;  // the frame may follow
       groups = std::exchange(later, {});
       for (const auto& [group, gain] : several)
         if (gain.value >= kEnough && (!likeness_.other_cycles || gain.low > 0)) divide(group, groups);
@@ -212,12 +214,16 @@ class Search {
     pilots_.expect_more(own.size());
   }
 
-  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0).
+  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0). Where the pilot
+  /// gains more than the run may, the interval lies lower by that; and where it loses what more of a part does not, the
+  /// interval's upper end is as much higher.
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
-    const double high = together == 1 ? gain.high : std::min(gain.high, most(i)), value = std::min(gain.value, high);
-    const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
     const WhatIf& what = what_ifs_[i];
-    out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, gain.low, high, together};
+    const double lost = together == 1 && !out_.whole && !is_choice(what.name()) ? std::max(0.0, -gain.value) : 0,
+                 high = std::min(gain.high + lost, most(i)), value = std::min(gain.value, high),
+                 low = gain.low - (gain.value - value);
+    const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
+    out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, low, high, together};
   }
 
   /// Relaxes each of these classes with the present pilot.
@@ -235,7 +241,9 @@ class Search {
     const auto any = [&](const auto& is) { return std::any_of(classes.begin(), classes.end(), is); };
     const bool slots = any([&](std::size_t i) { return what_ifs_[i].name() == "ray_slots"; }),
                warms = any([&](std::size_t i) { return what_ifs_[i].part.how.keeps_shapes; });
-    return foretelling(base_, slots).gain({&*relaxed.cycle, relaxed.rays_completed}, likeness_.off(), warms);
+    // A pilot that was taken since it is like the run is less so in what was not compared.
+    return foretelling(base_, slots)
+        .gain({&*relaxed.cycle, relaxed.rays_completed}, std::max(kLike, likeness_.off()), warms);
   }
 
   /// Notes the gains of classes that were relaxed with the present pilot, with what this is known to be off by.
@@ -305,7 +313,7 @@ class Search {
     }
     const Gain& best = out_.gains[worth.front()];
     if (best.gain < kWorthIt || worth_naming(best.gain, best.low)) return 0;
-    return doubled(budget_, out_.paths, most, worth);  // the greatest gain may be noise
+    return paths_against_noise(budget_, out_.paths, out_.simulated, worth);
   }
 
   /// Simulates a pilot with other seeds: its places in the picture are the same, and their rays are others. It is the
@@ -316,9 +324,9 @@ class Search {
     const double base = static_cast<double>(base_.cycle->cycles);
     const std::uint64_t twice = 2 * out_.paths;
     BasePilot of{out_.paths, draw_, base};
-    if (twice <= run_.paths && budget_.of(twice, seeds + 1) <= budget_.left(kWanted, out_.simulated))
+    if (twice <= run_.paths && budget_.of(twice, seeds + 1) <= budget_.left(kWithNoise, out_.simulated))
       of = {twice, draw_, 0};
-    else if (budget_.of(out_.paths, seeds) > budget_.left(kWanted, out_.simulated))
+    else if (budget_.of(out_.paths, seeds) > budget_.left(kWithNoise, out_.simulated))
       of = seeds_;
     if (budget_.of(of.paths, seeds) > budget_.left(kAtMost, out_.simulated)) return;
     pilots_.begin("other seeds", seeds + (of.cycles > 0 ? 0 : 1), of.paths);
@@ -358,6 +366,7 @@ class Search {
   SearchBudget budget_;
   PilotRuns pilots_;
   bool stops_ = false, cold_ = false;         // a resource; caches of the run
+  bool fixed_work_ = false;                   // of tests and shading
   std::uint64_t noise_seeds_ = 0, draw_ = 0;  // draw_: of the present pilot
   BasePilot seeds_;                           // the first pilot
   std::vector<WhatIf> what_ifs_;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/numeric/worth_naming.h"
 #include "ringbus/verdict/steady_state.h"
 
 namespace carousel::ringbus {
@@ -13,6 +14,21 @@ MemoryReads reads_between(const cycle::CycleResult& result, std::uint64_t slots)
   if (!result.all_begun || begin == result.progress.end() || begin->at >= result.all_begun->at)
     return {result.memory.lines, result.first_reads};
   return {result.all_begun->reads - begin->reads, result.all_begun->first_reads - begin->first_reads};
+}
+
+bool best_when_warm(const WarmGain& memory, double first_share, const std::vector<WarmGain>& others) {
+  const auto limits = [](double gain) { return 2 * gain / (1 + gain); };
+  const double warm = 1 - first_share * std::min(1.0, limits(memory.gain));  // the time of the frame then
+  const auto of_memory = [&](double gain) {
+    const double saved = (1 - first_share) * std::min(1.0, limits(gain)) / 2;
+    return saved / (warm - saved);
+  };
+  const double gain = of_memory(memory.gain);
+  if (!worth_naming(gain, of_memory(memory.low))) return false;
+  return std::all_of(others.begin(), others.end(), [&](const WarmGain& other) {
+    const double saved = other.gain / (1 + other.gain);
+    return saved < warm && saved / (warm - saved) <= gain;
+  });
 }
 
 bool gains_of_cold_caches(std::string_view part) {

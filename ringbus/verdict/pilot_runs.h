@@ -36,10 +36,11 @@ std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64
 
 // These bound what a search simulates, as parts of the run's rays. A pilot's ray takes about as long as one of the run.
 // A pilot's paths stand for as many rays as the run's; where they have more, the search takes more.
-inline constexpr double kScreening = 0.4;   ///< that the first pilot is to take
-inline constexpr double kWanted = 0.75;     ///< that all pilots are to take
-inline constexpr double kAtMost = 1.1;      ///< beyond which no simulation begins after the first pilot
-inline constexpr double kWithFrame = 1.55;  ///< the same, where the last one is the whole frame
+inline constexpr double kScreening = 0.4;  ///< that the first pilot is to take
+inline constexpr double kWithNoise = 0.7;  ///< that all are to take, where larger pilots tell the noise
+inline constexpr double kWanted = 0.9;     ///< that all pilots are to take
+inline constexpr double kAtMost = 1.2;     ///< beyond which no simulation begins after the first pilot
+inline constexpr double kWithFrame = 1.6;  ///< the same, where the last one is the whole frame
 
 struct SearchBudget {
   std::uint64_t paths = 0, rays = 0;  ///< of the run
@@ -76,6 +77,15 @@ inline std::uint64_t paths_after_unlike(const SearchBudget& budget, std::uint64_
                                         std::uint64_t simulated, std::vector<std::size_t>& classes) {
   if (!cold || classes.empty() || budget.left(kWithFrame, simulated) < 1)
     return doubled(budget, pilot, budget.left(kAtMost, simulated), classes);
+  classes.resize(1);
+  return budget.paths;
+}
+
+/// Paths of the pilot that tells the first of these classes, which gains most, from noise: the whole frame, whose
+/// cycles as configured are known, if the budget has so many, or else twice as many as before. 0 if it has none.
+inline std::uint64_t paths_against_noise(const SearchBudget& budget, std::uint64_t pilot, std::uint64_t simulated,
+                                         std::vector<std::size_t>& classes) {
+  if (budget.left(kWithFrame, simulated) < 1) return doubled(budget, pilot, budget.left(kAtMost, simulated), classes);
   classes.resize(1);
   return budget.paths;
 }

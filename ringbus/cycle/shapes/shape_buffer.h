@@ -13,6 +13,7 @@
 #include "core/statistics/shape_buffer_counts.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
 #include "ringbus/cycle/shapes/shape_port.h"
+#include "ringbus/results/class_use.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -47,6 +48,11 @@ class ShapeBuffer {
   }
 
   ShapeBuffer(const MemoryConfig& config, const LinkConfig& link, const SidePorts& ports);
+
+  /// What is there and nobody holds, that which was used last first.
+  std::vector<BufferedShapes> kept() const;
+  /// Before the start: holds these as well, as far as there are free places, as used before all that is there already.
+  void warm(const std::vector<BufferedShapes>& shapes, double part);
 
   /// Takes what `user`, which holds nothing, needs for a test. Returns whether all is there; if not, the user waits,
   /// and will be among ready().
@@ -91,7 +97,6 @@ class ShapeBuffer {
   const ShapeBufferCounts& counts() const { return counts_; }
   /// By row of accel::StructureDepths, up to the last that was needed.
   const std::vector<StripReads>& reads() const { return reads_; }
-  std::uint64_t lines_asked() const { return port_.lines(); }
 
  private:
   static constexpr std::uint32_t kNone = ~0u;

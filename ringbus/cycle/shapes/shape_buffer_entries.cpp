@@ -85,6 +85,28 @@ void ShapeBuffer::keep(std::uint32_t index) {
   idle_places_ += entry.places;
 }
 
+std::vector<BufferedShapes> ShapeBuffer::kept() const {
+  std::vector<BufferedShapes> out;
+  for (std::uint32_t at = newest_; at != kNone; at = entries_[at].older)
+    out.push_back({entries_[at].span.address, entries_[at].span.bytes});
+  return out;
+}
+
+void ShapeBuffer::warm(const std::vector<BufferedShapes>& shapes, double part) {
+  if (drops_) return;
+  for (const BufferedShapes& one : shapes) {
+    const ShapeSpan span{one.address, one.bytes};
+    if (WarmCaches::drawn(one.address) >= part || find(span) != kNone || free_places_ < places(span)) continue;
+    const std::uint32_t index = allocate(span, places(span));
+    Entry& entry = entries_[index];
+    entry.here = true;
+    entry.newer = oldest_;
+    (oldest_ == kNone ? newest_ : entries_[oldest_].older) = index;
+    oldest_ = index;
+    idle_places_ += entry.places;
+  }
+}
+
 /// Shapes for which another resource has asked: they are kept if they find places that nobody holds or waits for.
 void ShapeBuffer::take_pushed(Cycle now) {
   while (pushed_->next() <= now) {

@@ -57,9 +57,7 @@ MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
 
 void ShapeCache::warm(std::span<const std::uint64_t> lines, double from, double to) {
   for (const std::uint64_t line : lines) {
-    const std::uint64_t mixed = (line + 1) * 0x9e3779b97f4a7c15ull,
-                        drawn = (mixed ^ (mixed >> 31)) * 0xbf58476d1ce4e5b9ull;
-    const double at = static_cast<double>(drawn >> 11) * 0x1p-53;
+    const double at = WarmCaches::drawn(line);
     if (from <= at && at < to) tags_.insert(line);
   }
 }

@@ -15,6 +15,8 @@
 
 namespace carousel::ringbus::cycle {
 
+class ShapeBuffer;
+
 /// The engine's view of a resource, with or without packets.
 class ResourceAgent : public Agent {
  public:
@@ -34,8 +36,7 @@ class ResourceAgent : public Agent {
   virtual Work work() const = 0;
   virtual ResourceStatistics statistics() const = 0;
   virtual CollectionStore::Statistics collections() const = 0;
-  /// Lines of shape data for which it has asked its cache.
-  virtual std::uint64_t lines_asked() const = 0;
+  virtual ShapeBuffer& shape_buffer() = 0;
   /// The IDs in its collections over time; null where there are none. After close().
   virtual const IdCensus* census() const { return nullptr; }
   /// Packets of its own that were discarded because a resource had stopped.

@@ -50,7 +50,7 @@ class Tile final : public ResourceAgent {
   void close(Cycle end) override;
   TileResult result() const override;
   Work work() const override;
-  std::uint64_t lines_asked() const override { return shapes_.lines_asked(); }
+  ShapeBuffer& shape_buffer() override { return shapes_; }
   ResourceStatistics statistics() const override;
   CollectionStore::Statistics collections() const override { return resource_.collections().statistics(); }
   const IdCensus* census() const override { return &samples_.census(); }

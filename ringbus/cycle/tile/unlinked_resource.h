@@ -27,7 +27,7 @@ class UnlinkedResource : public ResourceAgent {
     ledger_.close(end);
     tester_.close(end);
   }
-  std::uint64_t lines_asked() const final { return shapes_.lines_asked(); }
+  ShapeBuffer& shape_buffer() final { return shapes_; }
   ResourceStatistics statistics() const final {
     ResourceStatistics s = sink_.statistics();
     // Rays are tested one by one, not as members of packets.

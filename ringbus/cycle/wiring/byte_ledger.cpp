@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/system/error.h"
+#include "ringbus/cycle/shapes/shape_buffer.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -33,7 +34,7 @@ void check_lines(const SimulatedMachine& machine, const std::vector<ByteRow>& ro
   std::uint64_t looked_up = 0, asked = 0;
   for (const auto& cache : own ? machine.memory().own_caches() : machine.memory().caches())
     looked_up += cache->statistics().lines - cache->statistics().past_end;  // nobody gets those past the end
-  for (const auto& resource : machine.resources()) asked += resource->lines_asked();
+  for (const auto& resource : machine.resources()) asked += resource->shape_buffer().port().lines();
   // An L2 answers resources, and ray control and shading; a resource's own cache has one client.
   check("caches looked up", looked_up, own ? shapes : shapes + ray_data);
   check("resources asked for", asked, shapes);

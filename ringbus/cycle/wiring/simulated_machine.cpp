@@ -277,6 +277,18 @@ std::vector<std::vector<Agent*>> SimulatedMachine::share_out(std::size_t threads
   return parts;
 }
 
+void SimulatedMachine::warm(const WarmCaches& from) {
+  memory_->warm(from);
+  if (from.buffers == nullptr || from.buffers->size() != resources_.size()) return;
+  for (std::size_t r = 0; r < resources_.size(); ++r) {
+    ShapeBuffer& buffer = resources_[r]->shape_buffer();
+    buffer.warm((*from.buffers)[r], from.part);
+    // One with more room than that of the run would have more by now; others have used that, too.
+    for (std::size_t i = 1; i < resources_.size(); ++i)
+      buffer.warm((*from.buffers)[(r + i) % resources_.size()], from.part);
+  }
+}
+
 void SimulatedMachine::close(Cycle end) const {
   for (const auto& resource : resources_) resource->close(end);
   for (const auto& hub : network_.hubs()) hub->close(end);

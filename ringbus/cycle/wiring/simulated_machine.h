@@ -36,7 +36,7 @@ class SimulatedMachine {
   const Network& network() const { return network_; }
   const MemorySystem& memory() const { return *memory_; }
   /// Before the start.
-  void warm(const WarmCaches& caches) { memory_->warm(caches); }
+  void warm(const WarmCaches& from);
   const ShapeMemory& shapes() const { return shape_memory_; }
   /// Null unless a timeline or the life of a ray is recorded.
   Recorder* recorder() const { return recorder_.get(); }

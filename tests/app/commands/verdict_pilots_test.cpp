@@ -23,31 +23,18 @@ class VerdictPilots : public testing::Test {
   const Program program_;
 };
 
-constexpr const char* kOnePart =
-    "engine: {kind: cycle, threads: 1}\n"
-    "image: {width: 56, height: 40, samples: 2, max_depth: 5}\n"
-    "scene: {builtin: terrain, triangles: 4000}\n"
-    "topology: {resources: 4, shape: ring, visit: owners, link: {latency_cycles: 1, bytes_per_cycle: 16, depth: 16}}\n"
-    "packets: {ids_per_cycle: 2}\n"
-    "collections: {traversal: spread}\n"
-    "rays: {slots_per_resource: 16}\n"
-    "testers: {box: {units: 1}, triangle: {units: 4, interval_cycles: 1}, contexts: 2}\n"
-    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 32, l2_kib: 8, shape_buffer_kib: "
-    "64}\n"
-    "shading: {workers: 1, cycles_per_shade: 60}\n";
-
 constexpr const char* kFarOff =
     "engine: {kind: cycle, threads: 1}\n"
     "image: {width: 40, height: 28, samples: 2, max_depth: 5}\n"
-    "scene: {builtin: spheres, triangles: 8000}\n"
+    "scene: {builtin: spheres, triangles: 4000}\n"
     "topology: {resources: 8, shape: independent, visit: owners, link: {latency_cycles: 16, bytes_per_cycle: 16, "
     "depth: 16}}\n"
     "packets: {ids_per_cycle: 32}\n"
     "collections: {traversal: spread}\n"
     "rays: {slots_per_resource: 32}\n"
     "testers: {box: {units: 1}, triangle: {units: 4, interval_cycles: 1}, contexts: 2}\n"
-    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 32, l2_kib: 64, shape_buffer_kib: "
-    "16}\n"
+    "memory: {l2_latency_cycles: 10, dram_latency_cycles: 400, dram_bytes_per_cycle: 4, l2_kib: 8, l1_kib: 64, "
+    "shape_buffer_kib: 4}\n"
     "shading: {workers: 1, cycles_per_shade: 4}\n";
 
 constexpr const char* kOtherCycles =
@@ -93,16 +80,53 @@ constexpr const char* kSlowMemory =
     "shape_buffer_kib: 64}\n"
     "shading: {workers: 4, cycles_per_shade: 4}\n";
 
-// The pilot's workers are busy for 74 % of the time, and the run's for 89 %. Without these 15 points the interval of
-// contexts would be above zero; with a veto a larger pilot would name shading.
-TEST_F(VerdictPilots, ASmallDeviationOfOnePartVetoesNothingAndWidensIntervals) {
-  const Json bottleneck = searched(kOnePart)["bottleneck"];
-  EXPECT_EQ(bottleneck["unlike"], "");
-  EXPECT_EQ(bottleneck["limits"], "") << bottleneck.dump(1);
-  ASSERT_FALSE(bottleneck["gains"].empty());
-  const Json& best = bottleneck["gains"][0];
-  EXPECT_GT(best["gain"], 0.05);
-  EXPECT_LE(best["low"], 0) << best.dump();
+// Each resource needs 104 KiB of shapes again and again, and has room for 64.
+constexpr const char* kNarrowBuffers =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 80, height: 56, samples: 2, max_depth: 3}\n"
+    "scene: {builtin: sliver, triangles: 2000}\n"
+    "topology: {resources: 8, shape: independent, visit: all, link: {latency_cycles: 16, bytes_per_cycle: 64, depth: "
+    "8}}\n"
+    "packets: {ids_per_cycle: 8}\n"
+    "collections: {traversal: treelet}\n"
+    "bvh: {treelet_triangles: 64}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "testers: {box: {units: 16}, triangle: {units: 4, interval_cycles: 4}, contexts: 4}\n"
+    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 50, dram_bytes_per_cycle: 4, l2_kib: 8, shape_buffer_kib: "
+    "64}\n"
+    "shading: {workers: 16, cycles_per_shade: 20}\n";
+
+constexpr const char* kBusyWorker =
+    "engine: {kind: cycle, threads: 1}\n"
+    "image: {width: 80, height: 56, samples: 2, max_depth: 3}\n"
+    "scene: {builtin: terrain, triangles: 40000}\n"
+    "topology: {resources: 4, shape: bidirectional, visit: owners, link: {latency_cycles: 1, bytes_per_cycle: 16, "
+    "depth: 8}}\n"
+    "packets: {ids_per_cycle: 8}\n"
+    "collections: {traversal: treelet}\n"
+    "bvh: {treelet_triangles: 64}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "testers: {box: {units: 4}, triangle: {units: 1, interval_cycles: 1}, contexts: 2}\n"
+    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 50, dram_bytes_per_cycle: 32, l2_kib: 512, "
+    "shape_buffer_kib: 4}\n"
+    "shading: {workers: 1, cycles_per_shade: 60}\n";
+
+// A pilot whose buffers were empty would spend its time on filling them, and more room would gain 3 % of 366.
+TEST_F(VerdictPilots, MoreRoomForShapesGainsWhatTheFrameGains) {
+  const Json bottleneck = searched(kNarrowBuffers)["bottleneck"];
+  EXPECT_EQ(bottleneck["limits"], "shape_buffer") << bottleneck.dump(1);
+  EXPECT_GT(bottleneck["gains"][0]["low"], 1);
+}
+
+// The one shader worker is busy for 87 % of the time, so that nothing else gains more than 15 %, nor three points for
+// the schedule. Pilots alone would allow twice that.
+TEST_F(VerdictPilots, NothingGainsMoreThanTheWorkOfOthersLeaves) {
+  const Json report = searched(kBusyWorker);
+  ASSERT_FALSE(report["bottleneck"]["gains"].empty()) << report["bottleneck"].dump(1);
+  for (const Json& gain : report["bottleneck"]["gains"])
+    if (gain["name"] != "shading") {
+      EXPECT_LT(gain["high"], 0.19) << gain.dump();
+    }
 }
 
 // By a pilot that is drawn by position alone the run takes 17 % longer than foretold.
@@ -142,11 +166,11 @@ TEST_F(VerdictPilots, AClassThatStandsOutIsNamedInSpiteOfOtherCycles) {
   EXPECT_LT(bottleneck["rays"], 0.1 * report["rays"]["completed"].get<double>());
 }
 
-// Its pilots hardly fill the machine, and foretell nearly twice the run's cycles.
+// A small frame of which most is in the resources' own caches: its pilots foretell a quarter fewer cycles than it took.
 TEST_F(VerdictPilots, NothingIsNamedWhereCyclesAreFarOff) {
   const Json report = searched(kFarOff), bottleneck = report["bottleneck"];
   EXPECT_EQ(bottleneck["limits"], "") << bottleneck.dump(1);
-  EXPECT_LT(bottleneck["deviation"], -0.4);
+  EXPECT_GT(std::abs(bottleneck["deviation"].get<double>()), bottleneck["noise"].get<double>() + 0.02);
   EXPECT_THAT(bottleneck["unlike"].get<std::string>(), testing::HasSubstr("cycles for the frame"));
 }
 

@@ -68,7 +68,7 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
   EXPECT_LT(named["gain"], named["high"]);
   const Json& noise = report["cycle_noise"];
   EXPECT_FALSE(noise["whole_frame"]);
-  EXPECT_LT(noise["fraction"], 0.1);
+  EXPECT_LT(noise["fraction"], 0.15);
   const Json other = run(kTerrain, {"image.seed=77"});
   EXPECT_GE(other["engine"]["cycles"], noise["low"]) << noise.dump();
   EXPECT_LE(other["engine"]["cycles"], noise["high"]) << noise.dump();
@@ -79,7 +79,7 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
 // it simulates would wait for a memory that the frame hardly needed.
 TEST_F(VerdictRun, TheLastFrameOfASeriesIsSearchedWithItsWarmCaches) {
   const Json report =
-      run(kTerrain, {"engine.what_if=true", "image.width=64", "image.height=48", "image.samples=1",
+      run(kTerrain, {"engine.what_if=true", "image.width=96", "image.height=64", "image.samples=1",
                      "rays.slots_per_resource=16", "frames={count: 2, step: 0, update: none}", "memory.l2_kib=4096",
                      "memory.shape_buffer_kib=4", "memory.dram_latency_cycles=20000"});
   const Json& rows = report["frames"]["rows"];
@@ -155,7 +155,7 @@ TEST_F(VerdictRun, ASearchKeepsItsBudgetAlsoOfSmallFrames) {
            std::string("rays.slots_per_resource=") + slots, "--force", "--out", "out", "--log-level", "debug"});
       ASSERT_EQ(outcome.status, 0) << outcome.err;
       if (Json::parse(program_.read("out/report.json"))["bottleneck"].contains("frame_too_small")) continue;
-      EXPECT_LE(times_of_run(outcome.err), 1.2) << size << " pixels, " << slots << " slots";
+      EXPECT_LE(times_of_run(outcome.err), 1.7) << size << " pixels, " << slots << " slots";
       ++searched;
     }
   EXPECT_GE(searched, 4);
@@ -180,7 +180,8 @@ TEST_F(VerdictRun, WhatTheLedgerBoundsIsNotSimulated) {
 }
 
 // Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are
-// read again and again, as in a frame of any size. Where tests limit the same frame, its first reads do not matter.
+// read again and again, as in a frame of any size. Where a third of the reads are first ones, memory would gain most
+// without them. Where tests limit the same frame, its first reads do not matter.
 TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
   const std::vector<std::string> frame{
       "engine.what_if=true",        "image.width=96",    "image.height=72", "scene.triangles=20000",
@@ -194,6 +195,13 @@ TEST_F(VerdictRun, ColdCachesAreNoVerdict) {
   EXPECT_EQ(cold["bottleneck"]["limits"], "");
   ASSERT_TRUE(cold["bottleneck"].contains("cold_caches")) << cold["bottleneck"].dump(1);
   EXPECT_EQ(cold["bottleneck"]["cold_caches"]["first"], cold["bottleneck"]["cold_caches"]["reads"]);
+  slow.emplace_back("memory.l2_kib=192");
+  const Json partly = run(kTerrain, slow);
+  ASSERT_TRUE(partly["bottleneck"].contains("cold_caches")) << partly["bottleneck"].dump(1);
+  EXPECT_EQ(partly["bottleneck"]["cold_caches"]["instead"], "memory_bandwidth");
+  EXPECT_EQ(partly["bottleneck"]["limits"], "memory_bandwidth");
+  EXPECT_GT(partly["cycle_noise"]["paths"], partly["bottleneck"]["paths"])
+      << "the search had rays left for larger ones";
   slow.emplace_back("memory.l2_kib=4");
   const Json warm = run(kTerrain, slow)["bottleneck"];
   EXPECT_FALSE(warm.contains("cold_caches")) << warm["cold_caches"].dump();

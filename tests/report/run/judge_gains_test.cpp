@@ -105,6 +105,15 @@ TEST(JudgeGains, OfColdCachesItNamesAClassThatMayGainAsMuch) {
       "in a larger picture");
 }
 
+TEST(JudgeGains, NamesMemoryThatWouldGainMostWithoutFirstReads) {
+  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 260, "memory"},
+                                    .gains = {gain("memory", 0.48, 0.45, 0.51), gain("boxes", 0.1, 0.05, 0.15)}});
+  EXPECT_EQ(b.limits, "memory");
+  EXPECT_EQ(b.verdict,
+            "memory: twice memory gains +48.0 % (+45.0 to +51.0 %), next is boxes with +10.0 % (+5.0 to +15.0 %); 26 % "
+            "of the lines that memory reads are read for the first time, and memory gains less in a larger picture");
+}
+
 TEST(JudgeGains, NamesNothingOfColdCaches) {
   const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 460},
                                     .gains = {gain("boxes", 0.5, -0.1, 0.9), gain("memory", 0.48, 0.45, 0.51)}});

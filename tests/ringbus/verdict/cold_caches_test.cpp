@@ -31,6 +31,19 @@ TEST(ColdCaches, ALineIsNewOnce) {
   EXPECT_FALSE(lines.insert(1));
 }
 
+// Memory limits 80 of 100 cycles, and a quarter of that is first reads: of 80 cycles 60 are left to it, of which more
+// of it saves 30. Another class saves 25 in both frames, or 35.
+TEST(ColdCaches, MemoryMayGainMostWithoutFirstReads) {
+  const WarmGain memory{0.4 / 0.6, 0.3};
+  const auto saves = [](double part) { return WarmGain{part / (1 - part), 0}; };
+  EXPECT_TRUE(best_when_warm(memory, 0.25, {saves(0.25)}));
+  EXPECT_FALSE(best_when_warm(memory, 0.25, {saves(0.25), saves(0.35)}));
+  EXPECT_TRUE(best_when_warm(memory, 0.25, {saves(0.299)}));
+  EXPECT_FALSE(best_when_warm(memory, 0.25, {saves(0.301)}));
+  EXPECT_FALSE(best_when_warm(memory, 1, {})) << "nothing is left";
+  EXPECT_FALSE(best_when_warm({memory.gain, -0.01}, 0.25, {})) << "it may gain nothing";
+}
+
 TEST(ColdCaches, OnlyTheWayToMemoryGainsByThem) {
   EXPECT_TRUE(gains_of_cold_caches("memory_bandwidth"));
   EXPECT_TRUE(gains_of_cold_caches("memory_latency"));

@@ -81,6 +81,42 @@ TEST(PilotRuns, OfAWarmFrameAreAsWarm) {
   EXPECT_EQ(runs.simulate({pilot.wanted.front()}).front().cycle->cycles, second.cycle->cycles);
 }
 
+std::uint64_t misses(const RunResult& run) {
+  std::uint64_t sum = 0;
+  for (const cycle::TileResult& tile : run.cycle->tiles) sum += tile.shapes.misses;
+  return sum;
+}
+
+// The run's shape buffers hold all shapes that its rays need, and a machine that begins with them fetches none. A
+// buffer of a quarter of the room holds part of them, and one of the full room then finds the rest with the others.
+TEST(PilotRuns, BeginWithTheShapesOfTheRunsBuffers) {
+  PilotCase pilot;
+  Config config = pilot.machines[0], small = config;
+  config.memory.shape_buffer_kib = 256;
+  small.memory.shape_buffer_kib = 4;
+  const accel::Accel& accel = pilot.scene.accel(config.bvh);
+  const auto run = [&](const Config& machine, const cycle::WarmCaches& warm) {
+    RunOptions options = on_threads(1);
+    options.warm = warm;
+    ScatterWorkload workload = pilot.scene.workload();
+    return run_cycle(machine, accel, pilot.scene.size(), workload, options);
+  };
+  const RunResult cold = run(config, {});
+  const cycle::BufferShapes& all = cold.cycle->buffered;
+  ASSERT_GT(misses(cold), 100u);
+  EXPECT_EQ(misses(run(config, {.part = 1, .buffers = &all})), 0u);
+  EXPECT_EQ(run(config, {.part = 0, .buffers = &all}).cycle->cycles, cold.cycle->cycles);
+  const std::uint64_t half = misses(run(config, {.part = 0.5, .buffers = &all}));
+  EXPECT_GT(half, misses(cold) / 4);
+  EXPECT_LT(half, misses(cold) * 3 / 4);
+  const RunResult narrow = run(small, {});
+  cycle::BufferShapes own = narrow.cycle->buffered, of_first = own;
+  of_first.at(1).clear();
+  EXPECT_LT(run(config, {.part = 1, .buffers = &of_first}).cycle->tiles[1].shapes.misses,
+            cold.cycle->tiles[1].shapes.misses * 9 / 10);
+  EXPECT_LT(misses(run(small, {.part = 1, .buffers = &own})), misses(narrow));
+}
+
 TEST(PilotRuns, HandOnAnError) {
   PilotCase pilot;
   std::atomic<int> begun{0};
@@ -106,22 +142,42 @@ cycle::CycleResult run_of(double shading_busy, Cycle memory, Cycle latency) {
 // Busy for x of the time in the mean, and for twice that where it is worst: half of that is saved, 1 / (1 - x) - 1, and
 // 3 % for the schedule.
 TEST(LedgerBound, FollowsFromWhatPartsAreBusyWith) {
-  EXPECT_NEAR(most_gain(run_of(0.2, 0, 0), "shading"), 0.25 + 0.03, 1e-12);
-  EXPECT_NEAR(most_gain(run_of(0, 0, 0), "shading"), 0.03, 1e-12);
-  EXPECT_EQ(most_gain(run_of(0.5, 0, 0), "shading"), std::numeric_limits<double>::infinity());
-  EXPECT_EQ(most_gain(run_of(0, 0, 0), "contexts"), std::numeric_limits<double>::infinity());
+  EXPECT_NEAR(most_gain(run_of(0.2, 0, 0), "shading", false), 0.25 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 0, 0), "shading", false), 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0.5, 0, 0), "shading", false), 1 + 0.03, 1e-12) << "no part was busy for longer";
+  EXPECT_NEAR(most_gain(run_of(0.9, 0, 0), "shading", false), 1 + 0.03, 1e-12);
+  EXPECT_EQ(most_gain(run_of(0, 0, 0), "contexts", false), std::numeric_limits<double>::infinity());
 }
 
 TEST(LedgerBound, FollowsFromWhatResourcesWaitFor) {
   // Of 100 cycles that a resource waits, others wait for 50 more.
-  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "memory_latency"), 0.15 / 0.85 + 0.03, 1e-12);
-  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "test_latency"), 0.3 / 0.7 + 0.03, 1e-12);
-  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "packets_in_flight"), 0.03, 1e-12);
-  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "l2_port"), 0.15 / 0.85 + 0.03, 1e-12)
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "memory_latency", false), 0.15 / 0.85 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "test_latency", false), 0.3 / 0.7 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "packets_in_flight", false), 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run_of(0, 100, 200), "l2_port", false), 0.15 / 0.85 + 0.03, 1e-12)
       << "busy for 90 %, seldom waited for";
   cycle::CycleResult warps = run_of(0, 0, 0);
   warps.tiles[1].warps.emplace();
-  EXPECT_EQ(most_gain(warps, "memory_latency"), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(most_gain(warps, "memory_latency", false), std::numeric_limits<double>::infinity());
+}
+
+// Shading takes 800 of the run's 1,000 cycles, whatever else is relaxed.
+TEST(LedgerBound, FollowsFromTheWorkOfOthers) {
+  const cycle::CycleResult run = run_of(0.8, 900, 900);
+  for (const char* part : {"contexts", "memory_latency", "ray_slots"}) {
+    EXPECT_NEAR(most_gain(run, part, true), 0.25 + 0.03, 1e-12) << part;
+    EXPECT_GT(most_gain(run, part, false), 1) << "its work is not known: " << part;
+  }
+  EXPECT_NEAR(most_gain(run, "shading", true), 1 + 0.03, 1e-12) << "l2_port's work is not fixed";
+  Config config;
+  cycle::CycleResult plain = run;
+  plain.uses.push_back({"bundle_tests", 2, 0});
+  EXPECT_TRUE(work_is_fixed(config, plain));
+  config.shading.lanes = 4;
+  EXPECT_FALSE(work_is_fixed(config, plain));
+  config = {};
+  plain.uses.back().busy = 1;
+  EXPECT_FALSE(work_is_fixed(config, plain)) << "rays that are tested together";
 }
 
 // A pilot of 100 of 1,000 paths, doubled, takes a fifth of the run for the machine as configured and for each class.
@@ -149,8 +205,18 @@ TEST(SearchBudget, AColdFrameFollowsAPilotThatIsNotLikeIt) {
   EXPECT_EQ(cold, std::vector<std::size_t>{7});
   EXPECT_EQ(paths_after_unlike(budget, 100, false, 2000, warm), 200);
   EXPECT_EQ(warm, (std::vector<std::size_t>{7, 8}));
-  EXPECT_EQ(paths_after_unlike(budget, 100, true, 3000, late), 200) << "the frame would be beyond the budget";
+  EXPECT_EQ(paths_after_unlike(budget, 100, true, 3500, late), 200) << "the frame would be beyond the budget";
   EXPECT_EQ(paths_after_unlike(budget, 100, true, 2000, none), 200) << "no class is left to relax";
+}
+
+// Of 5,000 rays 2,900 have been simulated, and the whole frame keeps within the budget; or 3,500.
+TEST(SearchBudget, TheWholeFrameTellsAGainFromNoiseIfThereAreRaysForIt) {
+  const SearchBudget budget{1000, 5000};
+  std::vector<std::size_t> classes{7, 8}, late = classes;
+  EXPECT_EQ(paths_against_noise(budget, 100, 2900, classes), 1000);
+  EXPECT_EQ(classes, std::vector<std::size_t>{7});
+  EXPECT_EQ(paths_against_noise(budget, 100, 3500, late), 200);
+  EXPECT_EQ(late, std::vector<std::size_t>{7});
 }
 
 // A part that differs by 15 points or less is borne with; of two such, or of one that differs by more, those count that
@@ -162,6 +228,7 @@ TEST(PilotLikeness, OnlyAPartThatMattersVetoesAnAnswer) {
   const auto shading_does = [](std::string_view part) { return part == "shading"; };
   EXPECT_EQ(off.veto(matters), "its memory_bandwidth is 55 % busy, and the run's 30 %");
   EXPECT_EQ(off.veto(shading_does), "");
+  EXPECT_NEAR(off.off(), 0.25, 1e-12) << "by which gains may be off";
   off.parts = {{"memory_bandwidth", 0.4, 0.3}, {"shading", 0.8, 0.9}};
   EXPECT_EQ(off.veto(matters), "its shading is 80 % busy, and the run's 90 %");
   EXPECT_EQ(off.veto(shading_does), "");
