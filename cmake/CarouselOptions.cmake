@@ -46,11 +46,14 @@ if(CAROUSEL_SANITIZE)
 endif()
 
 # What users run reads files of strangers: checked copies (_FORTIFY_SOURCE), a guarded stack, and tables of addresses that are
-# read-only once the program has begun. Sanitizers bring checks of their own.
+# read-only once the program has begun. Sanitizers bring checks of their own. The engines read no files and are most of the
+# time of a run: there only functions with arrays of characters guard the stack.
 option(CAROUSEL_HARDEN "Build releases with checked copies, a guarded stack and read-only tables of addresses" ON)
 if(CAROUSEL_HARDEN AND CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CAROUSEL_SANITIZE)
+  set(in_ringbus "$<STREQUAL:$<TARGET_PROPERTY:NAME>,carousel_ringbus>")
   target_compile_options(carousel_options INTERFACE
-                         "$<BUILD_INTERFACE:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3;-fstack-protector-strong>")
+                         "$<BUILD_INTERFACE:-U_FORTIFY_SOURCE;-D_FORTIFY_SOURCE=3>"
+                         "$<BUILD_INTERFACE:$<IF:${in_ringbus},-fstack-protector;-D__SSP_STRONG__=3,-fstack-protector-strong>>")
   target_link_options(carousel_options INTERFACE "$<BUILD_INTERFACE:LINKER:-z,relro,-z,now>")
 endif()
 

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <type_traits>
 
 #include <hwy/highway.h>
@@ -146,7 +147,7 @@ void test_boxes(const Accel& accel, NodeKey key, std::uint32_t lanes, const RayM
       count_extra_hits(accel, key.ref, in_registers(ray), record.hit.t, mask, counts);
     if (HWY_UNLIKELY(direct != 0)) test_direct<Slab>(accel, node, key, direct, record, members.any_hit_calls, counts);
     hits.masks[i] = static_cast<std::uint8_t>(mask);
-    if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
+    if (hits.entries != nullptr) std::memcpy(hits.entries + kMaxWidth * i, entry, sizeof entry);
   }
   for (int lane = 0; lane < kMaxWidth; ++lane)
     if (lanes >> lane & 1) hits.nearest[lane] = nearest[lane];
@@ -170,7 +171,7 @@ void test_members(const Accel& accel, NodeKey key, std::uint32_t lanes, const Ra
       hits.nearest[lane] = std::min(hits.nearest[lane], entry[lane]);
     }
     hits.masks[i] = static_cast<std::uint8_t>(mask);
-    if (hits.entries != nullptr) std::copy(entry, entry + kMaxWidth, hits.entries + kMaxWidth * i);
+    if (hits.entries != nullptr) std::memcpy(hits.entries + kMaxWidth * i, entry, sizeof entry);
   }
 }
 

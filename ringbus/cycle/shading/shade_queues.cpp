@@ -13,7 +13,7 @@ ShadeQueues::ShadeQueues(const ShadingConfig& shading, std::size_t workers, std:
       sorted_(shading.sort == ShadingConfig::Sort::kShader),
       lanes_(static_cast<std::size_t>(shading.lanes)),
       seed_(seed),
-      queues_(distribute_ == Distribute::kFifoFill ? 1 : workers, Queue{std::vector<std::deque<Waiting>>(1)}),
+      queues_(distribute_ == Distribute::kFifoFill ? 1 : workers, Queue{std::vector<Fifo<Waiting>>(1)}),
       in_work_(workers) {}
 
 std::size_t ShadeQueues::queue_for(const RayResult& ray) {
@@ -48,14 +48,14 @@ void ShadeQueues::push(const RayResult& ray, std::uint32_t shader) {
 }
 
 /// The list, among those with `least` rays or more, whose first ray has waited longest; null if there is none.
-std::deque<ShadeQueues::Waiting>* ShadeQueues::oldest(Queue& queue, std::size_t least) {
-  std::deque<Waiting>* best = nullptr;
-  for (std::deque<Waiting>& list : queue.lists)
+Fifo<ShadeQueues::Waiting>* ShadeQueues::oldest(Queue& queue, std::size_t least) {
+  Fifo<Waiting>* best = nullptr;
+  for (Fifo<Waiting>& list : queue.lists)
     if (list.size() >= least && (best == nullptr || list.front().order < best->front().order)) best = &list;
   return best;
 }
 
-ShadeQueues::Waiting ShadeQueues::take_first(Queue& queue, std::deque<Waiting>& list) {
+ShadeQueues::Waiting ShadeQueues::take_first(Queue& queue, Fifo<Waiting>& list) {
   const Waiting first = list.front();
   list.pop_front();
   --queue.size;
@@ -68,7 +68,7 @@ bool ShadeQueues::take(std::uint32_t worker, ShadeVector& vector) {
   vector.shaders.clear();
   Queue& queue = queues_[distribute_ == Distribute::kFifoFill ? 0 : worker];
   if (queue.size == 0) return false;
-  std::deque<Waiting>* list = oldest(queue, lanes_);
+  Fifo<Waiting>* list = oldest(queue, lanes_);
   if (list == nullptr) list = oldest(queue, 1);
   while (!list->empty() && vector.rays.size() < lanes_) {
     const Waiting first = take_first(queue, *list);

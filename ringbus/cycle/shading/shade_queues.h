@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
 #include "core/config/fields/shading.h"
 #include "core/types/workload.h"
+#include "ringbus/time/fifo.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -46,13 +46,13 @@ class ShadeQueues {
     RayResult ray;
   };
   struct Queue {
-    std::vector<std::deque<Waiting>> lists;  // by shader, or one
+    std::vector<Fifo<Waiting>> lists;  // by shader, or one
     std::size_t size = 0;
   };
 
   std::size_t queue_for(const RayResult& ray);
-  static std::deque<Waiting>* oldest(Queue& queue, std::size_t least);
-  Waiting take_first(Queue& queue, std::deque<Waiting>& list);
+  static Fifo<Waiting>* oldest(Queue& queue, std::size_t least);
+  Waiting take_first(Queue& queue, Fifo<Waiting>& list);
 
   ShadingConfig::Distribute distribute_;
   bool sorted_;

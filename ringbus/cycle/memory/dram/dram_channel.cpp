@@ -37,7 +37,7 @@ void DramChannel::idle_until(DramCycle now) {
 /// At most one request a cycle takes a place.
 const DramRequest* DramChannel::take_arrivals(DramCycle now) {
   for (const bool write : {false, true}) {
-    std::deque<Arrival>& arrivals = arrivals_[write];
+    Fifo<Arrival>& arrivals = arrivals_[write];
     if (arrivals.empty() || arrivals.front().at > now || queues_[write].size() >= places_) continue;
     arrived_ = arrivals.front().request;
     arrivals.pop_front();

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <vector>
 
@@ -11,6 +10,7 @@
 #include "ringbus/cycle/memory/dram/dram_command_buses.h"
 #include "ringbus/cycle/memory/dram/dram_queue.h"
 #include "ringbus/cycle/memory/dram/dram_timing.h"
+#include "ringbus/time/fifo.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -124,11 +124,11 @@ class DramChannel {
 
   DramTiming timing_;
   std::size_t places_, high_, low_;
-  std::array<std::deque<Arrival>, 2> arrivals_;  // reads, writes that have no place
-  std::array<DramQueue, 2> queues_;              // reads, writes
-  std::vector<Entry> active_;                    // have activated their rows, at most one of each bank
-  std::uint64_t activated_ = 0;                  // their banks, a bit each
-  std::uint64_t open_ = 0;                       // banks with an open row, likewise
+  std::array<Fifo<Arrival>, 2> arrivals_;  // reads, writes that have no place
+  std::array<DramQueue, 2> queues_;        // reads, writes
+  std::vector<Entry> active_;              // have activated their rows, at most one of each bank
+  std::uint64_t activated_ = 0;            // their banks, a bit each
+  std::uint64_t open_ = 0;                 // banks with an open row, likewise
   std::vector<Bank> banks_;
   std::vector<Group> groups_;
   std::vector<Pseudo> pseudos_;

@@ -32,6 +32,8 @@ class RaysInTest {
   /// Moves rays and the slots that they leave to `done` and `freed`: first those that were kept back and are in no test
   /// any more, then the completed ones. Rays that are still in test are kept back. Both are empty afterwards.
   void hand_over(HitBatch& rays, std::vector<std::uint32_t>& slots, HitBatch& done, std::vector<std::uint32_t>& freed) {
+    if (done.empty()) done.reserve(rays.size());
+    if (freed.empty()) freed.reserve(slots.size());
     std::size_t kept = 0;
     for (std::size_t i = 0; i < late_.size(); ++i) {
       if (visits_[late_slots_[i]] == 0) {

@@ -45,7 +45,7 @@ void SubtreeWalk::walk_ray(const accel::RayMembers& ray, IntersectionCounts& cou
     RayTests after = ray_tests(counts);
     ways_.add(*key, before, after);
     // One inversion serves all rays of a visit.
-    if (counts.inversions != inversions && !inverted_.insert(key->instance).second) {
+    if (counts.inversions != inversions && !inverts_first(key->instance)) {
       counts.inversions = inversions;
       counts.full_inversions = full;
       counts.inversions_in_double = in_double;
@@ -54,6 +54,13 @@ void SubtreeWalk::walk_ray(const accel::RayMembers& ray, IntersectionCounts& cou
     before = after;
   }
   ways_.end_ray();
+}
+
+/// Returns whether no ray before had the instance's matrix inverted. A visit meets few instances.
+bool SubtreeWalk::inverts_first(std::uint32_t instance) {
+  if (std::find(inverted_.begin(), inverted_.end(), instance) != inverted_.end()) return false;
+  inverted_.push_back(instance);
+  return true;
 }
 
 }  // namespace carousel::ringbus::cycle

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_set>
 #include <vector>
 
 #include "accel/structure/accel.h"
@@ -29,11 +28,12 @@ class SubtreeWalk final : public SubtreeTracer {
  private:
   void begin();
   void walk_ray(const accel::RayMembers& ray, IntersectionCounts& counts);
+  bool inverts_first(std::uint32_t instance);
 
   const accel::Accel& accel_;
   WalkSteps ways_;
   RayWalk walk_;
-  std::unordered_set<std::uint32_t> inverted_;  // instances whose matrix any of the rays needs inverted
+  std::vector<std::uint32_t> inverted_;  // instances whose matrix any of the rays needs inverted
 };
 
 }  // namespace carousel::ringbus::cycle
