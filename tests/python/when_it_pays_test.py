@@ -106,8 +106,10 @@ class WhenItPays(unittest.TestCase):
                     and "memory.dram.channels=1" in one["run"]["keys"]]
             machine = lambda one: one["run"]["keys"][one["run"]["keys"].index("engine.threads=1") + 1:]
             first, second = ([one for one in mine if f"image.seed={seed}" in one["run"]["keys"]] for seed in (1, 2))
-            best = [machine(min(first, key=lambda one: one[what])) for what in ("cycles", "nj_per_ray")]
-            self.assertEqual(sorted(map(machine, second)), sorted(best[:1] if best[0] == best[1] else best))
+            best = [[machine(one) for one in first if one[what] == min(other[what] for other in first)] for what in ("cycles", "nj_per_ray")]
+            ran = [machine(one) for one in second]
+            self.assertTrue(all(any(one in ran for one in some) for some in best), "as good ones are several at times")
+            self.assertTrue(all(any(one in some for some in best) for one in ran))
 
     def test_a_killed_study_goes_on(self):
         whole = self.study()

@@ -139,6 +139,8 @@ KEYS = {
     "topology.nodes.0.clock": ROUTERS[:1] + ["topology.nodes=[{name: r, count: 4}, {name: x, kind: router, clock: slow}]"] + ROUTERS[2:] + ["clocks.slow=700"],
     "topology.nodes.0.serves": CACHES,
     "topology.nodes.0.interleave_bytes": CACHES,
+    "topology.nodes.0.workers": ["topology.shape=graph", "topology.nodes=[{name: r, count: 4}, {name: s, kind: shading, KEY: VALUE}]",
+                                 "topology.links=[{ring: 'r[*]'}, {from: s, to: 'r[*]', both: true, carries: [new_rays, completed_rays]}]"],
     "topology.nodes.0.claim_cycles": GRAPH_TRAFFIC[:2] + ["topology.nodes=[{name: r, count: 4, latency_cycles: 4, claim_cycles: 2}]", "topology.links=[{line: 'r[*]', both: true}]"],
     "topology.nodes.0.at": PLACED,
     "topology.nodes.0.step": PLACED,

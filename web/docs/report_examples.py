@@ -17,11 +17,6 @@ RUNS = {
     "ring": (["scene.builtin=terrain", "scene.triangles=2000", "engine.kind=cycle", "image.width=64", "image.height=48",
               "image.samples=1", "rays.slots_per_resource=32", "topology.resources=4", "memory.l1_kib=4",
               "memory.dram.preset=gddr6_14", "verify=reference"] + ENERGY, ["--heat", "linear"]),
-    "slow-memory": (["scene.builtin=terrain", "scene.triangles=5000", "engine.kind=cycle", "engine.threads=1", "image.width=80",
-                     "image.height=56", "image.samples=1", "image.max_depth=2", "rays.slots_per_resource=32",
-                     "topology.resources=4", "memory.l2_kib=4096", "memory.dram_bytes_per_cycle=1",
-                     "memory.l2_latency_cycles=8", "memory.dram_latency_cycles=40", "memory.shape_buffer_kib=4",
-                     "testers.triangle.units=8", "testers.box.units=16", "testers.contexts=4", "shading.workers=8"], []),
     "larger-frame": (["scene.builtin=terrain", "scene.triangles=2000", "engine.kind=cycle", "image.width=96", "image.height=64",
                       "image.samples=1", "image.max_depth=2", "rays.slots_per_resource=32", "topology.resources=4"], []),
     "few-rays": (CORNELL, []),
@@ -31,6 +26,10 @@ RUNS = {
     "clusters": (TERRAIN + ["frames.count=3", "frames.update=clusters", "frames.builder.asks=l2"], []),
     "best-split": (CORNELL + ["area.fit=best", "area.budget_mm2=20"] + ENERGY, []),
     "clocks": (CORNELL + FOUR[:1] + [f"topology.nodes=[{PLACED}]", "topology.links=[{mesh: [2, 2]}]", "clocks.noc=1500"] + ENERGY, []),
+    "pools": (CORNELL + FOUR[:1] + ["topology.nodes=[{name: r, count: 4}, {name: s, kind: shading, serves: 'r[0..1]'}, "
+                                    "{name: t, kind: shading}]",
+                                    "topology.links=[{ring: 'r[*]'}, {from: 'r[*]', all_to: 's, t', both: true, "
+                                    "carries: [new_rays, completed_rays]}]"], []),
     "stops": (CORNELL + FOUR + ["topology.links=[{ring: 'r[*]', both: true, stops: {rule: slots}}]"], []),
     "spill": (CORNELL + ["collections.when_full=spill", "collections.capacity=64", "memory.path_state=memory",
                          "memory.ray_records=master", "memory.film=memory"], []),

@@ -21,8 +21,16 @@ std::vector<Plant> plants() {
          c.testers.units[UnitKind::kTriangle] = {1, 40, 40};
        }},
       {"dispatch", [](Config& c) { c.packets.ids_per_cycle = 1, c.packets.rays = c.collections.ready = 128; }},
-      {"link_bandwidth", [](Config& c) { c.topology.link.bytes_per_cycle = 1; }},
-      {"memory_bandwidth", [](Config& c) { c.memory.dram_bytes_per_cycle = 1, c.memory.l2_kib = 1; }},
+      {"link_bandwidth",
+       [](Config& c) {
+         c.topology.shape = TopologyShape::kBidirectional;  // on a ring one way another direction gains as much
+         c.topology.link.bytes_per_cycle = 1;
+       }},
+      {"memory_bandwidth",
+       [](Config& c) {
+         c.memory.dram_bytes_per_cycle = 4, c.memory.l2_kib = 1;
+         c.memory.shape_buffer_kib = 4;  // with one that holds the scene only the first reads take time
+       }},
       {"memory_latency",
        [](Config& c) {
          c.memory.l2_latency_cycles = 2000;
@@ -73,7 +81,7 @@ TEST(WhatIf, NamesThePlantedBottleneck) {
     config.rays.slots_per_resource = 64;  // small beside the frame
     plant.make(config);
     const Bottleneck found = search(scene, config, 8000, run_whole(scene, config));
-    ASSERT_FALSE(found.gains.empty()) << found.unlike << found.least_paths;
+    ASSERT_FALSE(found.gains.empty()) << plant.name << ": " << found.unlike << ", " << found.least_paths;
     std::string all;
     for (const Gain& gain : found.gains) all += fmt::format("\n  {} {:+.3f}", gain.name, gain.gain);
     EXPECT_EQ(found.gains.front().name, plant.name) << all;
