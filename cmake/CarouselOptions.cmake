@@ -47,7 +47,8 @@ endif()
 
 # What users run reads files of strangers: checked copies (_FORTIFY_SOURCE), a guarded stack, and tables of addresses that are
 # read-only once the program has begun. Sanitizers bring checks of their own. The engines read no files and are most of the
-# time of a run: there only functions with arrays of characters guard the stack.
+# time of a run: there only functions with arrays of characters guard the stack. They say by the macro that they have the
+# guard of the precompiled header, which is all libraries', or the compiler would not take it.
 option(CAROUSEL_HARDEN "Build releases with checked copies, a guarded stack and read-only tables of addresses" ON)
 if(CAROUSEL_HARDEN AND CMAKE_BUILD_TYPE STREQUAL "Release" AND NOT CAROUSEL_SANITIZE)
   set(in_ringbus "$<STREQUAL:$<TARGET_PROPERTY:NAME>,carousel_ringbus>")
