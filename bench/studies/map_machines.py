@@ -11,7 +11,7 @@ AHEAD = ["collections.partial=ahead", "testers.contexts=16", "memory.fetch_ahead
 SUBTREES = ["collections.traversal=treelet", "bvh.treelet_triangles=1024", *AHEAD]
 PIECES = ["collections.traversal=ordered", "collections.home=local", *AHEAD, "bvh.treelets.bytes=512"]
 
-SPILL, DEEP = ("collections.when_full=spill",), 100_000  # from so many triangles on
+SPILL, DEEP = ("collections.when_full=spill",), 100_000  # from so many triangles on, and where trees stand in a tree
 
 
 @dataclasses.dataclass(frozen=True)
@@ -103,7 +103,7 @@ def the_run(grid, kind, machine, scene, triangles, channels, rays, seed, more=()
     run["keys"] = [
         *keys, "memory.dram.preset=lpddr5_6400", f"memory.dram.channels={channels}", f"area.budget_mm2={BUDGET}",
         "memory.l2_mshrs=64", "energy.profile=n45", "engine.what_if=false", "engine.threads=1", *more, *machine,
-        *(KINDS[kind].deep if triangles > DEEP else ())]
+        *(KINDS[kind].deep if triangles > DEEP or scene == "instances" else ())]
     return run
 
 
