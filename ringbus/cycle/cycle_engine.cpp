@@ -276,35 +276,31 @@ class CycleRun {
 
   /// The classes of parts that the machine has, in a fixed order, and their use so far.
   std::vector<ClassUse> uses() const {
-    PerUnit<Cycle> units{};
-    Cycle reads = 0, dispatch = 0;
+    PerUnit<ClassUse> units{};
+    ClassUse reads{"ray_reads"}, dispatch{"dispatch"}, l2{"l2_port"}, l1{"l1_port"}, memory{"memory_bandwidth"},
+        shading{"shading"};
     for (const auto& tile : machine_.resources()) {
       const ResourceAgent::Work own = tile->work();
-      for (const auto [kind, busy] : units) busy += own.units[kind];
-      reads += own.ray_reads;
-      dispatch += own.dispatch;
+      for (const auto [kind, use] : units) use.count(1, own.units[kind]);
+      reads.count(config_.rays.banks > 0 ? 2 : 1, own.ray_reads);
+      dispatch.count(1, own.dispatch);
     }
-    const double tiles = static_cast<double>(machine_.resources().size());
+    for (const auto& cache : machine_.memory().caches())
+      l2.count(static_cast<double>(config_.memory.l2_banks), cache->statistics().port_busy);
+    for (const auto& cache : machine_.memory().own_caches()) l1.count(1, cache->statistics().port_busy);
+    for (const auto& one : machine_.memory().memories()) memory.count(1, one->counts().busy);
+    const std::vector<std::int64_t> workers = pool_workers(config_);
+    for (std::size_t i = 0; i < workers.size(); ++i)
+      shading.count(static_cast<double>(workers[i]), machine_.shading().pools()[i]->busy());
     // Packet processes that serve resources have no units, rays and caches.
-    const double testing = tiles - static_cast<double>(managers_of(config_.topology));
+    const double testing = dispatch.parts - static_cast<double>(managers_of(config_.topology));
+    reads.parts = config_.rays.banks > 0 ? 2 * testing : testing;
+    l1.parts = testing;
     std::vector<ClassUse> out;
-    for (const auto [kind, busy] : units) out.push_back({unit_row(kind).work, testing, busy});
-    out.push_back({"ray_reads", config_.rays.banks > 0 ? 2 * testing : testing, reads});
-    out.push_back({"dispatch", tiles, dispatch});
-    out.push_back(link_use());
-    Cycle port = 0;
-    for (const auto& cache : machine_.memory().caches()) port += cache->statistics().port_busy;
-    const double ports =
-        static_cast<double>(machine_.memory().caches().size()) * static_cast<double>(config_.memory.l2_banks);
-    out.push_back({"l2_port", ports, port});
-    if (!machine_.memory().own_caches().empty()) {
-      Cycle own = 0;
-      for (const auto& cache : machine_.memory().own_caches()) own += cache->statistics().port_busy;
-      out.push_back({"l1_port", testing, own});
-    }
-    out.push_back({"memory_bandwidth", static_cast<double>(machine_.memory().memories().size()),
-                   machine_.memory().counts().busy});
-    out.push_back({"shading", static_cast<double>(shader_workers(config_)), machine_.shading().busy()});
+    for (const auto [kind, use] : units) out.push_back({unit_row(kind).work, testing, use.busy, use.most});
+    out.insert(out.end(), {reads, dispatch, link_use(), l2});
+    if (!machine_.memory().own_caches().empty()) out.push_back(l1);
+    out.insert(out.end(), {memory, shading});
     return out;
   }
 
@@ -316,15 +312,14 @@ class CycleRun {
     std::size_t number = 0;
     machine_.for_each_link([&](const Topology::Wire& wire, std::size_t port) {
       const std::size_t link = number++;
-      if (!bus || wire.from.value < machine_.resources().size()) out.busy += machine_.busy_of_link(link, port);
+      if (!bus || wire.from.value < machine_.resources().size()) out.count(0, machine_.busy_of_link(link, port));
     });
     if (machine_.parcels() == nullptr) return out;
     const ParcelPlan& plan = machine_.parcels()->plan();
     for (std::size_t i = 0; i < plan.links.size(); ++i) {
-      out.busy += machine_.parcels()->time_of(i).busy();
-      if (const std::uint32_t shared = plan.links[i].wire; shared == ParcelPlan::kNone)
-        out.parts += 1;
-      else  // which has the packets too
+      const std::uint32_t shared = plan.links[i].wire;
+      out.count(shared == ParcelPlan::kNone ? 1 : 0, machine_.parcels()->time_of(i).busy());
+      if (shared != ParcelPlan::kNone)  // which has the packets too
         out.busy -= machine_.busy_of_link(shared, machine_.shared().topology.out_port_of(shared));
     }
     return out;

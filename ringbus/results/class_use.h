@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,14 @@ struct ClassUse {
   std::string_view name;  ///< as in `bottleneck` and `bound` of the report; a literal
   double parts = 0;       ///< parts side by side
   Cycle busy = 0;         ///< cycles in which a part worked, summed over the parts
+  Cycle most = 0;         ///< those of the part that worked most, or of equal parts at one place in the mean
+
+  /// Counts so many more parts at one place, or what parts did that are counted already (0).
+  void count(double more, Cycle cycles) {
+    parts += more;
+    busy += cycles;
+    most = std::max(most, more > 1 ? static_cast<Cycle>(static_cast<double>(cycles) / more) : cycles);
+  }
   friend bool operator==(const ClassUse&, const ClassUse&) = default;
 };
 

@@ -214,13 +214,14 @@ class Search {
     pilots_.expect_more(own.size());
   }
 
-  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0). Where the pilot
-  /// gains more than the run may, the interval lies lower by that; and where it loses what more of a part does not, the
-  /// interval's upper end is as much higher.
+  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0). Where a pilot gains
+  /// more than the run may, the interval lies lower by that; and where it loses what more of a part does not, the
+  /// interval's upper end is as much higher. What the whole frame gains is known.
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
     const WhatIf& what = what_ifs_[i];
-    const double lost = together == 1 && !out_.whole && !is_choice(what.name()) ? std::max(0.0, -gain.value) : 0,
-                 high = std::min(gain.high + lost, most(i)), value = std::min(gain.value, high),
+    const bool known = together == 1 && out_.whole;
+    const double lost = together == 1 && !known && !is_choice(what.name()) ? std::max(0.0, -gain.value) : 0,
+                 high = known ? gain.high : std::min(gain.high + lost, most(i)), value = std::min(gain.value, high),
                  low = gain.low - (gain.value - value);
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
     out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, low, high, together};

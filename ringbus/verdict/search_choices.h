@@ -38,7 +38,8 @@ inline double busy(const cycle::CycleResult& run, std::string_view part) {
   return 1;
 }
 
-/// The part of the run's time in which resources waited for what a class of parts makes shorter, in the mean; 1 if
+/// The part of the run's time in which resources waited for what a class of parts makes shorter: in the mean, and half
+/// as much again, since others wait for their rays; or half the time of the one that waited most, if that is more. 1 if
 /// nobody counts that. Warps and the resources of a central machine wait in other ways.
 inline double waited(const cycle::CycleResult& run, std::string_view part) {
   using cycle::TileState;
@@ -49,19 +50,24 @@ inline double waited(const cycle::CycleResult& run, std::string_view part) {
              credits = part == "packets_in_flight", storage = part == "collection_storage",
              latency = part == "test_latency";
   if (run.tiles.empty() || (!memory && !credits && !storage && !latency)) return 1;
-  Cycle sum = 0;
+  constexpr double kOthersWait = 1.5;
+  Cycle sum = 0, most = 0;
   for (const cycle::TileResult& tile : run.tiles) {
     if (tile.warps || tile.distributor) return 1;
-    sum += latency ? tile.testing.latency
-                   : tile.states[static_cast<std::size_t>(memory    ? TileState::kMemory
-                                                          : credits ? TileState::kCredits
-                                                                    : TileState::kStorage)];
+    const Cycle own = latency ? tile.testing.latency
+                              : tile.states[static_cast<std::size_t>(memory    ? TileState::kMemory
+                                                                     : credits ? TileState::kCredits
+                                                                               : TileState::kStorage)];
+    sum += own;
+    most = std::max(most, own);
   }
-  return static_cast<double>(sum) / (static_cast<double>(run.tiles.size()) * static_cast<double>(run.cycles));
+  return std::max(kOthersWait * static_cast<double>(sum) / static_cast<double>(run.tiles.size()),
+                  static_cast<double>(most) / 2) /
+         static_cast<double>(run.cycles);
 }
 
 /// True if tests and shading take as many cycles whichever rays meet: one at a time, without programs, whose time
-/// depends on caches.
+/// depends on caches. A ray that takes several ways at once does a percent more or fewer tests with other timing.
 inline bool work_is_fixed(const Config& config, const cycle::CycleResult& run) {
   const bool shared = std::any_of(run.tiles.begin(), run.tiles.end(),
                                   [](const cycle::TileResult& tile) { return tile.warps || tile.distributor; });
@@ -80,15 +86,25 @@ inline double most_beside_work(const cycle::CycleResult& run, std::string_view p
   return most > 0 ? 1 / std::min(1.0, most) - 1 : std::numeric_limits<double>::infinity();
 }
 
+/// The time that goes with a class of parts, half of which twice as many save on the busiest one; as if all of it goes
+/// where nobody counts it. One part has up to twice the time of the mean, or more where parts differ. Banks of DRAM
+/// take time beside that of its data, and twice the channels have twice the banks.
+inline std::optional<double> time_of(const cycle::CycleResult& run, std::string_view part) {
+  if (part == "memory_bandwidth" && run.dram) return std::nullopt;
+  for (const cycle::ClassUse& use : run.uses)
+    if (use.parts > 0 && use.name == part)
+      return std::max(busy(run, part), static_cast<double>(use.most) / 2 / static_cast<double>(run.cycles));
+  return std::nullopt;
+}
+
 /// The most that a class may gain. Half of the time that goes with it is saved, or all of it with room for what is
-/// fetched again; and one part may have twice the time of the mean, but no more than the run's. Where a resource waits,
-/// others may wait for its rays. Of 363 gains of parts in machines drawn by `script/verdicts --drawn`, one was greater,
-/// by half a point. Of 407 gains none was greater than what others' work leaves. Infinite where neither is known.
+/// fetched again, but no part has more than the run's. Of 363 gains of parts in machines drawn by `script/verdicts
+/// --drawn`, one was greater, by half a point. Of 407 gains none was greater than what others' work leaves. Infinite
+/// where neither is known.
 inline double most_gain(const cycle::CycleResult& run, std::string_view part, bool fixed_work) {
-  constexpr double kSchedule = 0.03, kOthersWait = 1.5;
-  const bool counted = std::any_of(run.uses.begin(), run.uses.end(),
-                                   [&](const cycle::ClassUse& use) { return use.parts > 0 && use.name == part; });
-  const double time = std::min(busy(run, part), kOthersWait * waited(run, part)),
+  constexpr double kSchedule = 0.03;
+  const std::optional<double> counted = time_of(run, part);
+  const double time = std::min(counted.value_or(1), waited(run, part)),
                own = time < 0.5 ? time / (1 - time)
                      : counted  ? 1.0
                                 : std::numeric_limits<double>::infinity();

@@ -161,6 +161,30 @@ TEST(LedgerBound, FollowsFromWhatResourcesWaitFor) {
   EXPECT_EQ(most_gain(warps, "memory_latency", false), std::numeric_limits<double>::infinity());
 }
 
+// Of four pools one is busy for 700 of 1,000 cycles, and the others for 20. Twice its workers save half of that.
+TEST(LedgerBound, FollowsFromTheBusiestPart) {
+  cycle::CycleResult run = run_of(0, 0, 0);
+  cycle::ClassUse& pools = run.uses.front();
+  pools = {"shading"};
+  pools.count(2, 1400);
+  for (int i = 0; i < 3; ++i) pools.count(4, 80);
+  EXPECT_EQ(pools.parts, 14);
+  EXPECT_EQ(pools.busy, 1640u);
+  EXPECT_NEAR(most_gain(run, "shading", false), 0.35 / 0.65 + 0.03, 1e-12);
+  run.tiles.resize(10);
+  run.tiles.front().states[static_cast<std::size_t>(cycle::TileState::kMemory)] = 900;
+  EXPECT_NEAR(most_gain(run, "memory_latency", false), 0.45 / 0.55 + 0.03, 1e-12) << "one resource of ten waits";
+}
+
+// The data wires of DRAM are busy for a third of the time, but its banks limit: twice the channels gain 106 %.
+TEST(LedgerBound, OfDramIsNotThatOfItsData) {
+  cycle::CycleResult run = run_of(0, 900, 0);
+  run.uses.push_back({"memory_bandwidth", 1, 330});
+  EXPECT_NEAR(most_gain(run, "memory_bandwidth", false), 0.33 / 0.67 + 0.03, 1e-12) << "of a pipe";
+  run.dram.emplace();
+  EXPECT_EQ(most_gain(run, "memory_bandwidth", false), std::numeric_limits<double>::infinity());
+}
+
 // Shading takes 800 of the run's 1,000 cycles, whatever else is relaxed.
 TEST(LedgerBound, FollowsFromTheWorkOfOthers) {
   const cycle::CycleResult run = run_of(0.8, 900, 900);
