@@ -192,7 +192,7 @@ report::Area machine_area(const Config& c, const SceneFacts& scene) {
   }
   double places = 0;
   for (const ringbus::Topology::Wire& wire : topology.wires()) {
-    places += static_cast<double>(wire.depth);
+    places += static_cast<double>(wire.depth + wire.places);
     if (wire.from.value >= topology.resources()) places += topology.hub_places(wire.from.value - topology.resources());
   }
   store(AreaPart::kLinkQueues, places * place_bytes(c) / kKiB);

@@ -113,6 +113,22 @@ TEST_F(Charges, BuffersOfRoutersHaveArea) {
   EXPECT_GT(area("8", "8"), bare);
 }
 
+// A router between two rings of slots has them for packets that get on a ring, and for those that get off.
+TEST_F(Charges, BuffersBesideRingsHaveAreaOnBothSides) {
+  const auto area = [&](const std::string& links, int buffers) {
+    return report(kMachine, {"energy.profile=n7",
+                             fmt::format("topology={{shape: graph, nodes: [{{name: r, count: 4}}, {{name: q, count: "
+                                         "4}}, {{name: x, kind: router, buffers: {}}}], links: [{}]}}",
+                                         buffers, links)})["area"]["parts"]["link_queues"]["mm2"]
+        .get<double>();
+  };
+  const auto of_eight = [&](const std::string& links) { return area(links, 72) - area(links, 64); };
+  const std::string slots = "{ring: 'r[*], x', stops: {rule: slots}}, {ring: 'q[*], x', stops: {rule: slots}}",
+                    links = "{ring: 'r[*], x'}, {ring: 'q[*], x'}";
+  EXPECT_GT(of_eight(links), 0);
+  EXPECT_NEAR(of_eight(slots), 2 * of_eight(links), 1e-12);
+}
+
 TEST_F(Charges, OfSeveralFramesAreMovedVertices) {
   const Json frames = report(
       "scene: {builtin: instances, instances: 20, time: 0}\nimage: {width: 12, height: 8, samples: 1, max_depth: 1}\n"
