@@ -130,6 +130,9 @@ void relax(Config& config, const Relaxation& relaxation) {
   walk(config, [&](const std::string& path, const auto&...) {
     return std::find(relaxation.keys.begin(), relaxation.keys.end(), path) != relaxation.keys.end();
   });
+  // Where all pools of workers name theirs, these are relaxed, and the key of the whole machine stays auto.
+  if (const DrawnPools drawn = drawn_pools(config.topology); drawn.pools > 0 && drawn.silent == 0)
+    config.shading.workers.reset();
 }
 
 }  // namespace carousel

@@ -182,6 +182,27 @@ TEST(WhatIf, LiftsWhatTheMachineHas) {
   EXPECT_TRUE(has(c, "memory_latency"));
 }
 
+// Pools of which each names its workers, or some, or none.
+TEST(WhatIf, LiftsTheWorkersOfAllPools) {
+  const auto twice = [](const std::string& near, const std::string& far, const std::string& workers) {
+    const Config config =
+        load_config({"scene: {builtin: cornell}\nengine: {kind: cycle}\nshading: {workers: " + workers +
+                         "}\ntopology:\n  shape: graph\n  nodes:\n    - {name: r, count: 4}\n"
+                         "    - {name: near, kind: shading, workers: " +
+                         near + ", serves: 'r[0..1]'}\n    - {name: far, kind: shading, workers: " + far +
+                         "}\n  links:\n    - {ring: 'r[*]'}\n"
+                         "    - {from: 'r[*]', all_to: 'near, far', both: true, carries: [new_rays, completed_rays]}\n",
+                     "a.yaml"})
+            .config;
+    const std::vector<WhatIf> all = what_ifs(config, accel::Accel());
+    const auto shading = std::ranges::find_if(all, [](const WhatIf& what_if) { return what_if.name() == "shading"; });
+    return shading == all.end() ? std::vector<std::int64_t>() : pool_workers(shading->relaxed);
+  };
+  EXPECT_EQ(twice("3", "2", "auto"), (std::vector<std::int64_t>{6, 4}));
+  EXPECT_EQ(twice("3", "auto", "5"), (std::vector<std::int64_t>{6, 4}));
+  EXPECT_EQ(twice("auto", "auto", "5"), (std::vector<std::int64_t>{5, 5}));
+}
+
 // A user who sets these keys runs the machine that was simulated; keys at the end of their range have no what_if.
 TEST(WhatIf, SaysWhatToSet) {
   const std::string text =
