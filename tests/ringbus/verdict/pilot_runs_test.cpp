@@ -109,6 +109,10 @@ TEST(PilotRuns, BeginWithTheShapesOfTheRunsBuffers) {
   const std::uint64_t half = misses(run(config, {.part = 0.5, .buffers = &all}));
   EXPECT_GT(half, misses(cold) / 4);
   EXPECT_LT(half, misses(cold) * 3 / 4);
+  cycle::BufferShapes only(all.size());
+  only.at(1) = all.at(1);
+  EXPECT_LT(run(config, {.part = 1, .buffers = &only}).cycle->tiles[1].shapes.misses,
+            cold.cycle->tiles[1].shapes.misses / 2);
   const RunResult narrow = run(small, {});
   cycle::BufferShapes own = narrow.cycle->buffered, of_first = own;
   of_first.at(1).clear();
