@@ -131,10 +131,6 @@ report::Memory memory(const ringbus::cycle::CycleResult& c, const MemoryConfig& 
   return out;
 }
 
-}  // namespace
-
-namespace {
-
 std::vector<report::WorkerPool> pools(const ringbus::cycle::CycleResult& c, const Config& config) {
   const ringbus::ParcelPlan plan = ringbus::plan_parcels(config.topology, config.memory.line_bytes);
   const std::vector<std::int64_t> workers = pool_workers(config);

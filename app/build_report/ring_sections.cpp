@@ -133,8 +133,8 @@ void add_ray_queues(report::Report& r, const ringbus::RunResult& result, const C
 
 namespace {
 
-/// What each link carries, in the order of the rows: those with packets, those without, and those between stops of
-/// rings. Nothing where links carry packets alone, or are queues of the native engine, which do.
+/// Returns what each link carries, in the order of the rows: links with packets, then those without, then those between
+/// stops of rings. It is empty where links carry packets alone, as the queues of the native engine do.
 std::vector<std::string> carried_by_rows(const Config& config) {
   if (config.engine.kind == EngineKind::kNative) return {};
   const ringbus::ParcelPlan plan = ringbus::plan_parcels(config.topology, config.memory.line_bytes);

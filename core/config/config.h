@@ -104,8 +104,8 @@ inline std::int64_t shader_workers(const Config& c) {
       c.engine.kind == EngineKind::kCycle ? std::min<std::int64_t>(256, 2 * ray_owners(c.topology)) : 2);
 }
 
-/// The workers of each pool: in the order of the drawing, or of the one that there is. Those without a number share
-/// what the others leave, and the first ones have one more where it does not come out even.
+/// Returns the workers of each pool in the order of the drawing, or of the only pool. Pools without a number share what
+/// the others leave, and the first of them have one more where it does not come out even.
 inline std::vector<std::int64_t> pool_workers(const Config& c) {
   const DrawnPools drawn = drawn_pools(c.topology);
   const std::int64_t left = shader_workers(c) - drawn.workers;

@@ -34,7 +34,7 @@ void check_workers(const Config& config, const DrawnPools& drawn, const RuleBrea
                      all, drawn.workers, drawn.silent));
 }
 
-/// What the machine has once, beside or behind its only pool.
+/// Refuses what a machine has once, beside or behind its only pool.
 void check_single(const Config& config, const RuleBreach& breach) {
   const auto refuse = [&](const char* key, bool found, std::string_view expected) {
     if (found)

@@ -12,7 +12,7 @@ namespace carousel::ringbus::cycle {
 /// The workload as the source of camera rays for a pool of workers. Keeps references to all that it is given.
 class CameraRays {
  public:
-  /// What all pools know of the workload.
+  /// All pools know this of the workload.
   struct Source {
     bool finished = false;  ///< no further ray comes that no other ray causes
     bool dry = false;       ///< there is none before a ray has been shaded
