@@ -52,7 +52,7 @@ class CycleRun {
       return !stopped;
     };
     if (options_.meter == nullptr)
-      run_windows(parts, wakeups, machine_.lookahead(), keep_running);
+      run_windows(parts, wakeups, machine_.lookahead(), sharing(), keep_running);
     else
       run_metered(parts, wakeups, keep_running, *options_.meter);
     const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
@@ -65,6 +65,9 @@ class CycleRun {
   }
 
  private:
+  /// A number of threads that is asked for is taken at its word.
+  Sharing sharing() const { return config_.engine.threads ? Sharing::kAlways : Sharing::kWhenFaster; }
+
   /// A cycle of the resources begins with the last cycle of the fastest clock that is not after it.
   void run_metered(const std::vector<std::vector<Agent*>>& parts, WakeupTable& wakeups,
                    const std::function<bool(Cycle)>& keep_running, EnergyMeter& meter) {
@@ -75,7 +78,8 @@ class CycleRun {
       meter.read(energy_);
       return to_fastest.floor_to_network(meter.next());
     };
-    run_windows(parts, wakeups, machine_.lookahead(), keep_running, look, to_fastest.floor_to_network(meter.next()));
+    run_windows(parts, wakeups, machine_.lookahead(), sharing(), keep_running, look,
+                to_fastest.floor_to_network(meter.next()));
   }
 
   /// The last cycle in which anything was done. Caches, memory, bus and bridges only pass on things that arrive later.

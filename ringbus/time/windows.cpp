@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "ringbus/rays/ray_id.h"
+#include "ringbus/time/faster_way.h"
 
 namespace carousel::ringbus {
 
@@ -69,11 +70,12 @@ class Barrier {
 
 class WindowRun {
  public:
-  WindowRun(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+  WindowRun(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead, Sharing sharing,
             const std::function<bool(Cycle)>& keep_running, const std::function<Cycle(Cycle)>& look, Cycle first_look)
       : parts_(parts),
         wakeups_(wakeups),
         lookahead_(lookahead),
+        sharing_(sharing),
         keep_running_(keep_running),
         look_(look),
         next_look_(first_look),
@@ -121,8 +123,8 @@ class WindowRun {
     const bool alone = parts_.size() == 1;
     Barrier::Patience patience;
     for (std::uint64_t window = 0;; ++window) {
-      if (!alone && window > 0 && window % kPollInterval == 0 && has_little_work()) {  // all threads agree
-        if (thread == 0) run_alone();
+      if (!alone && window > 0 && window % kPollInterval == 0 && (slower_together_ || has_little_work())) {
+        if (thread == 0) run_alone();  // all threads agree
         barrier_.wait(patience);
       }
       Cycle first = look(thread, schedule);
@@ -140,6 +142,7 @@ class WindowRun {
       if (window % kPollInterval == 0) {
         if (thread == 0 && !keep_running_(first)) stop_.store(true, std::memory_order_relaxed);
         next_[thread].runs = 0;
+        if (thread == 0) began_ = now();
         if (!alone) barrier_.wait(patience);
       }
       const Cycle end = first + lookahead_;
@@ -156,9 +159,13 @@ class WindowRun {
         from = to;
       }
       if (thread == 0) reached_ = first;
+      if (thread == 0 && sharing_ == Sharing::kWhenFaster && (window + 1) % kPollInterval == 0)
+        slower_together_ = way_.alone_after_together(next_[0].runs, now() - began_, now());
       if (!alone) barrier_.wait(patience);
     }
   }
+
+  static FasterWay::Time now() { return std::chrono::steady_clock::now().time_since_epoch(); }
 
   /// Waiting for each other takes the threads longer than the few agents that run in a window.
   bool has_little_work() const {
@@ -167,12 +174,16 @@ class WindowRun {
     return runs < kLeastRuns * parts_.size() * kPollInterval;
   }
 
-  /// The calling thread runs the agents of all threads, which wait, until there is more to do or an end.
+  /// The calling thread runs the agents of all threads, which wait, until that is slower, or an end.
   void run_alone() {
-    for (std::uint64_t window = 0, runs = 0;; ++window) {
+    bool slower_together = slower_together_;  // which others may not have read yet
+    FasterWay::Time began = now();
+    for (std::uint64_t window = 0, runs = 0, own = 0;; ++window) {
       if (window == kPollInterval) {
-        if (runs >= 2 * kLeastRuns * parts_.size() * kPollInterval) return;
-        window = runs = 0;
+        if (slower_together) slower_together = way_.alone_after_alone(own, now() - began, now());
+        if (!slower_together && runs >= 2 * kLeastRuns * parts_.size() * kPollInterval) return;
+        window = runs = own = 0;
+        began = now();
       }
       Cycle first = kNever;
       for (std::size_t t = 0; t < parts_.size(); ++t) first = std::min(first, look(t, schedules_[t]));
@@ -182,7 +193,9 @@ class WindowRun {
         look_until(from);
         const Cycle to = end_of_part(end);
         for (std::size_t t = 0; t < parts_.size(); ++t) {
-          runs += run_window(parts_[t], schedules_[t], from, to);
+          const std::uint64_t done = run_window(parts_[t], schedules_[t], from, to);
+          runs += done;
+          if (t == 0) own += done;
           if (to < end) poll(parts_[t], schedules_[t]);
         }
         from = to;
@@ -314,9 +327,14 @@ class WindowRun {
   std::span<const std::vector<Agent*>> parts_;
   WakeupTable& wakeups_;
   Cycle lookahead_;
+  Sharing sharing_;
   const std::function<bool(Cycle)>& keep_running_;
   const std::function<Cycle(Cycle)>& look_;
   Cycle next_look_;  // written by thread 0 while no agent runs
+  // Of thread 0, which writes slower_together_ before a barrier; the others read it after that.
+  FasterWay way_;
+  FasterWay::Time began_{0};
+  bool slower_together_ = false;
   Barrier barrier_;
   std::vector<Next> next_;
   std::vector<Schedule> schedules_;  // by thread
@@ -329,10 +347,10 @@ class WindowRun {
 
 }  // namespace
 
-Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead, Sharing sharing,
                   const std::function<bool(Cycle)>& keep_running, const std::function<Cycle(Cycle)>& look,
                   Cycle first_look) {
-  return WindowRun(parts, wakeups, lookahead, keep_running, look, first_look).run();
+  return WindowRun(parts, wakeups, lookahead, sharing, keep_running, look, first_look).run();
 }
 
 }  // namespace carousel::ringbus

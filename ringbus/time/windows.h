@@ -9,10 +9,14 @@
 
 namespace carousel::ringbus {
 
+/// When all threads run a machine, and not one of them alone: always, or while they are faster together.
+enum class Sharing { kAlways, kWhenFaster };
+
 /// Runs agents to the end of time: window after window of `lookahead` cycles, the least latency between any two
 /// agents (conservative synchronous windows; R. Fujimoto, Parallel discrete event simulation, CACM 33 (1990)).
 /// The result is the same for any number of threads. While fewer than eight agents a thread have something to do in a
-/// window, all run on the calling thread: to wait for each other would take longer.
+/// window, all run on the calling thread: to wait for each other would take longer. With Sharing::kWhenFaster they do
+/// so too while that is measured to be faster, as on a host whose cores have other work.
 ///
 /// `parts[t]` are the agents of thread t; parts[0] runs on the calling thread. `keep_running` is called there before
 /// every 64th window with its first cycle, while no agent runs, so that it may look at all of them; when it answers
@@ -25,7 +29,7 @@ namespace carousel::ringbus {
 /// two parts, so that its looks change nothing.
 ///
 /// Agents that are not polled() must have all their channels connected to `wakeups`, which was made for `parts`.
-Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead,
+Cycle run_windows(std::span<const std::vector<Agent*>> parts, WakeupTable& wakeups, Cycle lookahead, Sharing sharing,
                   const std::function<bool(Cycle)>& keep_running, const std::function<Cycle(Cycle)>& look = {},
                   Cycle first_look = kNever);
 

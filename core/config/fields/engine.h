@@ -63,7 +63,8 @@ void describe(V& v, EngineConfig& c) {
       "threads", c.threads, IntRange{1, 1024}, "threads",
       "The number of worker threads. With auto there are as many as the machine has cores; the cycle engine "
       "simulates a machine of fewer than 64 resources on one of them, and several machines at a time while it "
-      "looks for the bottleneck.");
+      "looks for the bottleneck. With auto one thread also runs a larger machine while that is faster, as on a host "
+      "with other work.");
   v.field("clock_mhz", c.clock_mhz, IntRange{1, 100'000}, "MHz", "The clock of the simulated machine.");
   v.choice("simd", c.simd, "The instruction set of the test kernels. With auto it is the best that this machine has.");
   v.choice(

@@ -84,7 +84,8 @@ class TrafficRun {
       agents.push_back(nodes_[n].get());
     }
     channels_.connect(wakeups, agents);
-    run_windows(parts, wakeups, std::min(link_latency(), channels_.least_latency()), [&](Cycle reached) {
+    const Sharing sharing = config_.engine.threads ? Sharing::kAlways : Sharing::kWhenFaster;
+    run_windows(parts, wakeups, std::min(link_latency(), channels_.least_latency()), sharing, [&](Cycle reached) {
       stopped = options_.stop.stop_requested();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {

@@ -108,7 +108,7 @@ struct TwoRelays {
     for (Relay* one : more) agents.push_back(one);
     WakeupTable wakeups(parts);
     list.connect(wakeups, agents);
-    run_windows(parts, wakeups, list.least_latency(), [](Cycle) { return true; });
+    run_windows(parts, wakeups, list.least_latency(), Sharing::kAlways, [](Cycle) { return true; });
   }
 };
 

@@ -2,6 +2,7 @@
 #include "ringbus/time/windows.h"
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <stdexcept>
 #include <thread>
@@ -46,7 +47,7 @@ TEST(Windows, AnErrorInOneThreadEndsAllOfThem) {
       std::vector<std::unique_ptr<Ticker>> agents;
       const std::vector<std::vector<Agent*>> parts = parts_of(agents, threads, fails_at);
       WakeupTable wakeups(parts);
-      EXPECT_THROW(run_windows(parts, wakeups, 1, [](Cycle) { return true; }), std::runtime_error);
+      EXPECT_THROW(run_windows(parts, wakeups, 1, Sharing::kAlways, [](Cycle) { return true; }), std::runtime_error);
     }
   }
 }
@@ -57,7 +58,7 @@ TEST(Windows, AStopEndsAllThreads) {
       std::vector<std::unique_ptr<Ticker>> agents;
       const std::vector<std::vector<Agent*>> parts = parts_of(agents, threads, kNever);
       WakeupTable wakeups(parts);
-      EXPECT_LT(run_windows(parts, wakeups, 1, [](Cycle) { return false; }), 10u);
+      EXPECT_LT(run_windows(parts, wakeups, 1, Sharing::kAlways, [](Cycle) { return false; }), 10u);
     }
   }
 }
@@ -65,11 +66,16 @@ TEST(Windows, AStopEndsAllThreads) {
 /// Has something to do in each of many cycles, and notes on which thread.
 class Placed final : public Agent {
  public:
+  /// `elsewhere_takes`: how long it runs on another thread than the one on which it is made.
+  explicit Placed(std::chrono::milliseconds elsewhere_takes = {}) : elsewhere_takes_(elsewhere_takes) {}
+
   Cycle next() const override { return now_ < kCycles ? now_ + 1 : kNever; }
   void run(Cycle end) override {
     now_ = end - 1;
     ++runs_;
-    elsewhere_ += std::this_thread::get_id() != made_on_;
+    if (std::this_thread::get_id() == made_on_) return;
+    ++elsewhere_;
+    std::this_thread::sleep_for(elsewhere_takes_);
   }
   std::string describe() const override { return ""; }
   std::uint64_t runs() const { return runs_; }
@@ -77,6 +83,7 @@ class Placed final : public Agent {
 
  private:
   static constexpr Cycle kCycles = 640;
+  std::chrono::milliseconds elsewhere_takes_;
   Cycle now_ = 0;
   std::uint64_t runs_ = 0, elsewhere_ = 0;
   std::thread::id made_on_ = std::this_thread::get_id();
@@ -91,7 +98,7 @@ TEST(Windows, FewAgentsRunOnOneThreadAndManyOnTheirOwn) {
       for (std::size_t i = 0; i < each; ++i) part.push_back(agents.emplace_back(std::make_unique<Placed>()).get());
     WakeupTable wakeups(parts);
     std::vector<Cycle> looks;
-    run_windows(parts, wakeups, 1, [&](Cycle at) {
+    run_windows(parts, wakeups, 1, Sharing::kAlways, [&](Cycle at) {
       looks.push_back(at);
       return true;
     });
@@ -102,6 +109,20 @@ TEST(Windows, FewAgentsRunOnOneThreadAndManyOnTheirOwn) {
     for (std::size_t i = 0; i < looks.size(); ++i) EXPECT_EQ(looks[i], 1 + 64 * i);  // as on one thread
     EXPECT_EQ(looks.size(), 10u);
   }
+}
+
+// A thread whose core has other work holds up all others in every window.
+TEST(Windows, OneThreadRunsAllWhileOthersHoldItUp) {
+  std::vector<std::unique_ptr<Placed>> agents;
+  std::vector<std::vector<Agent*>> parts(2);
+  for (std::size_t i = 0; i < 40; ++i)
+    parts[i / 20].push_back(
+        agents.emplace_back(std::make_unique<Placed>(std::chrono::milliseconds(i == 39 ? 2 : 0))).get());
+  WakeupTable wakeups(parts);
+  run_windows(parts, wakeups, 1, Sharing::kWhenFaster, [](Cycle) { return true; });
+  for (const auto& agent : agents) EXPECT_EQ(agent->runs(), 640u);
+  EXPECT_GE(agents[39]->elsewhere(), 64u) << "both ways are tried";
+  EXPECT_LE(agents[39]->elsewhere(), 320u);
 }
 
 /// Works in every third cycle, and notes when.
@@ -123,6 +144,7 @@ TEST(Windows, ALookFindsWhatComesBeforeIt) {
   for (const std::size_t threads : {1, 2, 3})
     for (const std::size_t each : {1, 20})
       for (const Cycle every : {1, 2, 7, 50}) {
+        const Sharing sharing = every % 2 == 0 ? Sharing::kAlways : Sharing::kWhenFaster;
         std::vector<std::unique_ptr<Worker>> agents;
         std::vector<std::vector<Agent*>> parts(threads);
         for (std::vector<Agent*>& part : parts)
@@ -137,7 +159,7 @@ TEST(Windows, ALookFindsWhatComesBeforeIt) {
           return at + every;
         };
         run_windows(
-            parts, wakeups, 5, [](Cycle) { return true; }, look, every);
+            parts, wakeups, 5, sharing, [](Cycle) { return true; }, look, every);
         EXPECT_EQ(looks, 402 / every) << threads << " threads";  // the last window ends with cycle 402
       }
 }
@@ -155,7 +177,7 @@ TEST(Windows, ALookThatThrowsEndsAllThreads) {
         return at + 7;
       };
       EXPECT_THROW(run_windows(
-                       parts, wakeups, 5, [](Cycle) { return true; }, look, 1),
+                       parts, wakeups, 5, Sharing::kAlways, [](Cycle) { return true; }, look, 1),
                    std::runtime_error);
       for (const auto& agent : agents) EXPECT_LT(agent->last(), 356u) << "no further window begins";
     }
@@ -208,7 +230,7 @@ TEST(Windows, WhoIsNotAskedIsWokenInTime) {
     WakeupTable wakeups(parts);
     wakeups.connect(two.there, two.a, two.b);
     wakeups.connect(two.back, two.b, two.a);
-    run_windows(parts, wakeups, 3, [](Cycle) { return true; });
+    run_windows(parts, wakeups, 3, Sharing::kAlways, [](Cycle) { return true; });
     const std::vector<Cycle>&a = two.a.heard(), &b = two.b.heard();
     ASSERT_EQ(a.size() + b.size(), 1001u);
     for (std::size_t i = 0; i < b.size(); ++i) {
@@ -225,7 +247,7 @@ TEST(Windows, WhoIsNotWokenIsNoticedAtTheEnd) {
     TwoListeners two;
     const std::vector<std::vector<Agent*>> parts = two.parts(threads);
     WakeupTable wakeups(parts);
-    EXPECT_THROW(run_windows(parts, wakeups, 3, [](Cycle) { return true; }), std::logic_error);
+    EXPECT_THROW(run_windows(parts, wakeups, 3, Sharing::kAlways, [](Cycle) { return true; }), std::logic_error);
   }
 }
 
@@ -240,7 +262,7 @@ TEST(Windows, WhoIsWokenLateIsNoticed) {
     if (at > 1) wakeups.row(0, 0)[1] = at;
     return at < 10'000;
   };
-  EXPECT_THROW(run_windows(parts, wakeups, 3, wake_late), std::logic_error);
+  EXPECT_THROW(run_windows(parts, wakeups, 3, Sharing::kAlways, wake_late), std::logic_error);
   EXPECT_TRUE(two.b.heard().empty());
 }
 

@@ -87,7 +87,7 @@ Outcome read(const std::vector<std::uint64_t>& lines, const StridePrefetcherKeys
   }
   WakeupTable wakeups(threads);
   list.connect(wakeups, agents);
-  run_windows(threads, wakeups, list.least_latency(), [](Cycle) { return true; });
+  run_windows(threads, wakeups, list.least_latency(), Sharing::kAlways, [](Cycle) { return true; });
   Outcome out{reader.done(), cache.statistics(), cache.ahead(), {}, list.rows()};
   if (!parts.empty()) out.counts = parts[0].agent->counts();
   return out;
