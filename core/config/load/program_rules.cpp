@@ -83,10 +83,12 @@ class ProgramRules {
 
   void every_parameter_is_loaded(const std::string& key, const std::vector<std::string>& program,
                                  const ProgramParameters& parameters) {
-    for (const auto& [name, value] : parameters.values)
+    for (const auto& parameter : parameters.values) {
+      const std::string& name = parameter.first;
       if (std::ranges::none_of(program, [&](const std::string& text) { return loads(text, name); }))
         issue(key + ".parameters." + name,
               "the program loads no number of this name; expected an instruction that does");
+    }
   }
 
   void shaders_are_whole() {
