@@ -165,8 +165,11 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   const ringbus::RunResult& run = searched.result;
   if (!run.complete) return report::judge_gains({.complete = false});
   const std::uint64_t slots = ringbus::slots_of(prepared.config());
-  if (const auto small = ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), slots))
+  if (auto small = ringbus::small_frame(*run.cycle, run.rays_completed, job.first_rays(), slots)) {
+    small->least_paths =
+        std::max(small->least_paths, ringbus::least_paths_to_search(prepared.config(), prepared.accel, searched));
     return report::judge_gains({.frame_too_small = too_small(run, *small, false)});
+  }
   ringbus::RunOptions options;
   options.threads = prepared.threads_beside;
   spdlog::debug("search: up to {} simulations at once", options.threads);
@@ -212,6 +215,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          .whole_frame = found.whole,
                          .paths = found.paths,
                          .rays = found.rays};
+  for (const ringbus::Untried& one : found.untried) out.untried.push_back({one.name, one.action, one.why});
   for (const ringbus::Gain& gain : found.gains)
     out.gains.push_back(
         {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high, gain.together});

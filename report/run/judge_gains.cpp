@@ -34,7 +34,7 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (const auto& small = b.frame_too_small)
     return fmt::format(
         "not found out: {} paths for {} ray slots mostly fill and drain the machine ({:.0f} % of the rays lie "
-        "between); from some {} paths on, or with fewer slots, most would; a search may take more",
+        "between); from some {} paths on, or with fewer slots, it can be said",
         grouped(small->paths), grouped(small->slots), 100 * small->between, grouped(small->least_paths));
   if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
@@ -69,6 +69,13 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   return text + cold_text(b);
 }
 
+std::string untried_text(const Bottleneck& b) {
+  std::string out;
+  for (const UntriedClass& one : b.untried)
+    out += fmt::format("{}{} ({})", out.empty() ? "; not tried: " : ", ", one.name, one.why);
+  return out;
+}
+
 }  // namespace
 
 std::string gain_text(const BottleneckGain& gain) {
@@ -91,7 +98,7 @@ Bottleneck judge_gains(Bottleneck found) {
   for (const BottleneckGain& gain : found.gains)
     if (named != nullptr && &gain != named && gain.high > named->low && gain.high > kWorthIt)
       found.rivals.push_back(gain.name);
-  found.verdict = verdict(found, named);
+  found.verdict = verdict(found, named) + untried_text(found);
   return found;
 }
 

@@ -58,6 +58,18 @@ void describe(V& v, const BottleneckGain& r) {
           "none was simulated, as the run's ledger bounds the gain below 5 %");
 }
 
+/// A class of parts that no configuration may relax so.
+struct UntriedClass {
+  std::string name, action, why;
+};
+
+template <class V>
+void describe(V& v, const UntriedClass& r) {
+  v.field("name", r.name, "", "class of parts");
+  v.field("action", r.action, "", "change that would relax the class");
+  v.field("why", r.why, "", "what `carousel check` says of such a configuration");
+}
+
 /// A frame that is too small beside the ray slots of its machine for a verdict.
 struct FrameTooSmall {
   std::uint64_t paths = 0, slots = 0;
@@ -75,7 +87,7 @@ void describe(V& v, const FrameTooSmall& r) {
   v.field("between", r.between, "fraction",
           "part of the rays that were completed between fill and drain; three quarters would do");
   v.field("search", r.search, "", "the frame fills the machine, but the least search would take longer than it may");
-  v.field("least_paths", r.least_paths, "paths", "paths that would do on this machine, about");
+  v.field("least_paths", r.least_paths, "paths", "paths that would do on this machine, about, also for a search");
   v.field("busiest", r.busiest, "", "class of parts that was busy for most of the run");
   v.field("busy", r.busy, "fraction", "part of the time in which its parts were busy, in the mean");
 }
@@ -126,6 +138,7 @@ struct Bottleneck {
   std::optional<FrameTooSmall> frame_too_small{};
   std::optional<ColdCaches> cold_caches{};
   std::vector<BottleneckGain> gains{};
+  std::vector<UntriedClass> untried{};
   std::vector<BottleneckPhase> phases{};
 };
 
@@ -153,6 +166,7 @@ void describe(V& v, const Bottleneck& r) {
       "the memory gains most, and a quarter or more of its reads fetch what nobody had asked for, so that it is not "
       "named; absent otherwise");
   v.section("gains", r.gains, "gain of each class, greatest first");
+  v.section("untried", r.untried, "classes that no configuration may relax so, of which no gain is told");
   v.section(
       "phases", r.phases,
       "stretches in which different classes limit the machine, in the order of time; one if it is always the same");

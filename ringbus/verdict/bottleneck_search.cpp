@@ -37,20 +37,18 @@ class Search {
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
     noise_seeds_ = stops_ ? 0 : run.noise_seeds;  // the whole machine's noise is not that of a run in which one stops
-    what_ifs_ = what_ifs(config_, accel_);
+    what_ifs_ = what_ifs(config_, accel_, &out_.untried);
     out_.gains.resize(what_ifs_.size());
     cold_ = cold(*run.result.cycle, slots_of(config_));
     fixed_work_ = work_is_fixed(config_, *run.result.cycle);
   }
 
   Bottleneck search() {
-    std::vector<std::vector<std::size_t>> groups = search_groups(what_ifs_, *run_.result.cycle);
-    for (std::size_t i = 0; i < what_ifs_.size(); ++i) note(i, {0, 0, most(i)}, 0);
-    leave_out(groups, out_.gains, kWorthIt);
+    std::vector<std::vector<std::size_t>> groups = first_groups();
     const std::size_t first = groups.size() + 1;
     out_.paths = first_paths(config_, run_.paths, budget_, first);
     if (budget_.of(out_.paths, first) > kAtMost) {
-      out_.least_paths = two_digits_up(static_cast<double>(run_.paths) * budget_.of(out_.paths, first) / kAtMost);
+      out_.least_paths = least_paths_for(first);
       out_.gains.clear();
       return out_;
     }
@@ -70,7 +68,25 @@ class Search {
     return out_;
   }
 
+  std::uint64_t least_paths() { return least_paths_for(first_groups().size() + 1); }
+
  private:
+  /// The classes that are worth a simulation by the run's ledger.
+  std::vector<std::vector<std::size_t>> first_groups() {
+    std::vector<std::vector<std::size_t>> groups = search_groups(what_ifs_, *run_.result.cycle);
+    for (std::size_t i = 0; i < what_ifs_.size(); ++i) note(i, {0, 0, most(i)}, 0);
+    leave_out(groups, out_.gains, kWorthIt);
+    return groups;
+  }
+
+  /// The paths of a frame in which the least pilots of so many machines keep within the budget.
+  std::uint64_t least_paths_for(std::size_t machines) const {
+    constexpr std::uint64_t kLarge = 1000;  // so that this frame is no bound of its pilots
+    const std::uint64_t pilot =
+        pilot_paths(config_, kLarge * run_.paths, kLarge * run_.result.rays_completed, 0, PilotSize::kLeast);
+    return two_digits_up(static_cast<double>(machines * pilot) / kAtMost);
+  }
+
   std::uint64_t frame() const { return run_.result.rays_completed; }
 
   /// So many simulations of the present pilot keep within this part of the run's rays.
@@ -383,6 +399,10 @@ Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, floa
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe) {
   return Search(config, accel, scene_size, make_pilot, run, options, observe).search();
+}
+
+std::uint64_t least_paths_to_search(const Config& config, const accel::Accel& accel, const SearchedRun& run) {
+  return Search(config, accel, 0, {}, run, {}, {}).least_paths();
 }
 
 }  // namespace carousel::ringbus

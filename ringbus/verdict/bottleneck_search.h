@@ -9,6 +9,7 @@
 #include "core/config/config.h"
 #include "ringbus/verdict/cycle_noise.h"
 #include "ringbus/verdict/pilot_runs.h"
+#include "ringbus/verdict/what_if.h"
 
 namespace carousel::ringbus {
 
@@ -47,6 +48,7 @@ struct Bottleneck {
   std::optional<CycleNoise> noise;  ///< of the run's cycles; absent if a resource stops
   std::uint64_t noise_paths = 0;    ///< paths of each simulation that it was found with
   std::vector<Gain> gains;          ///< greatest first
+  std::vector<Untried> untried;     ///< classes of which no gain is told
   std::vector<GainPhase> phases;    ///< of the first pilot, in the order of time; one if nothing changes
 };
 
@@ -72,5 +74,9 @@ struct Bottleneck {
 Bottleneck find_bottleneck(const Config& config, const accel::Accel& accel, float scene_size,
                            const PilotFactory& make_pilot, const SearchedRun& run, const RunOptions& options,
                            const SearchObserver& observe = {});
+
+/// The paths of a larger frame that a search fits, about: two digits, rounded up. The parts of the machine are taken to
+/// be as busy there as in the run.
+std::uint64_t least_paths_to_search(const Config& config, const accel::Accel& accel, const SearchedRun& run);
 
 }  // namespace carousel::ringbus

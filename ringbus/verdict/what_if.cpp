@@ -1,5 +1,6 @@
 #include "ringbus/verdict/what_if.h"
 
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -37,14 +38,18 @@ std::string text_of(const Config& config) {
   return config_json(config).dump();
 }
 
-/// Reads the configuration as a user's who tries the what-if. Returns whether it may be run.
-bool may_be_set(const std::string& resolved, const std::vector<std::string>& sets) {
+/// Reads the configuration as a user's who tries the what-if. Returns why it may not be run; absent if it may.
+std::optional<std::string> refused_as(const std::string& resolved, const std::vector<std::string>& sets) {
   try {
     load_config({resolved, "what-if.json"}, sets, {.force = true});
-    return true;
-  } catch (const ConfigError&) {
-    return false;
+    return std::nullopt;
+  } catch (const ConfigError& error) {
+    const ConfigIssue& first = error.issues().front();
+    return first.key_path + ": " + first.message;
   }
+}
+bool may_be_set(const std::string& resolved, const std::vector<std::string>& sets) {
+  return !refused_as(resolved, sets);
 }
 
 }  // namespace
@@ -64,7 +69,7 @@ Config tester_limited(const Config& config) {
   return machine;
 }
 
-std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
+std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel, std::vector<Untried>* untried) {
   std::vector<WhatIf> all;
   const std::string resolved = text_of(config);
   const bool valid = may_be_set(resolved, {});  // a test's machine may lack keys that what-ifs do not touch
@@ -72,7 +77,11 @@ std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel) {
     Config relaxed = config;
     relax(relaxed, part);
     std::vector<std::string> sets = config_differences(config, relaxed);
-    if (sets.empty() || (valid && !may_be_set(resolved, sets))) continue;
+    if (sets.empty()) continue;
+    if (auto why = valid ? refused_as(resolved, sets) : std::nullopt) {
+      if (untried != nullptr) untried->push_back({part.part, part.action, std::move(*why)});
+      continue;
+    }
     all.push_back({std::move(part), std::move(sets), std::move(relaxed)});
   }
   return all;

@@ -18,9 +18,15 @@ struct WhatIf {
 
   const std::string& name() const { return part.part; }
 };
+/// A class that the machine has and that no configuration may relax so.
+struct Untried {
+  std::string name, action;
+  std::string why;  ///< what reading such a configuration says
+};
 /// The what-ifs of the classes that the configured machine with such a scene has, in the order of the configuration's
-/// keys, whose rows say how they are relaxed. Classes whose keys are at the end of their range are left out.
-std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel);
+/// keys, whose rows say how they are relaxed. Classes that cannot be relaxed so are left out, and added to `untried`:
+/// their keys are near the end of their range, for example.
+std::vector<WhatIf> what_ifs(const Config& config, const accel::Accel& accel, std::vector<Untried>* untried = nullptr);
 
 /// The machine with all of these classes relaxed; absent if no configuration may say so.
 std::optional<Config> relaxed_together(const Config& config, const std::vector<const WhatIf*>& members);

@@ -116,8 +116,21 @@ TEST_F(VerdictRun, AFrameThatIsTooSmallIsToldSoWithTheSizeThatWouldDo) {
   EXPECT_GT(samples, 1u);
   const Json large = run(kTerrain, {"engine.what_if=true", "image.width=20", "image.height=15",
                                     "image.samples=" + std::to_string(samples), "rays.slots_per_resource=64"});
-  // It may still be too small for a search.
-  EXPECT_THAT(large["bottleneck"]["verdict"].get<std::string>(), testing::Not(testing::HasSubstr("fill and drain")));
+  EXPECT_FALSE(large["bottleneck"].contains("frame_too_small")) << large["bottleneck"].dump(1);
+  EXPECT_FALSE(large["bottleneck"]["gains"].empty());
+}
+
+// 400 workers are more than a machine may have.
+TEST_F(VerdictRun, AClassThatCannotBeDoubledIsToldAsUntried) {
+  const Json many = run(kTerrain, {"engine.what_if=true", "shading.workers=200"});
+  EXPECT_EQ(schema_problems(report::report_schema(), many), std::vector<std::string>{});
+  const Json& untried = many["bottleneck"]["untried"];
+  ASSERT_EQ(untried.size(), 1u) << untried.dump(1);
+  EXPECT_EQ(untried[0]["name"], "shading");
+  EXPECT_EQ(untried[0]["action"], "twice shading.workers");
+  EXPECT_THAT(untried[0]["why"].get<std::string>(), testing::StartsWith("shading.workers: "));
+  EXPECT_THAT(many["bottleneck"]["verdict"].get<std::string>(), testing::HasSubstr("; not tried: shading ("));
+  EXPECT_TRUE(run(kTerrain, {"engine.what_if=true", "shading.workers=128"})["bottleneck"]["untried"].empty());
 }
 
 // The machine is full for most of this frame, but each pilot would be a good part of it.
@@ -179,6 +192,31 @@ TEST_F(VerdictRun, WhatTheLedgerBoundsIsNotSimulated) {
     EXPECT_LE(real, gain["high"].get<double>()) << gain.dump();
   }
   EXPECT_GE(bounded, 3) << report["bottleneck"].dump(1);
+}
+
+// No part of a frame whose reads are all first ones is like it: the frame itself is simulated, for the class that gains
+// most. What is told of that is what a run of the relaxed machine takes.
+TEST_F(VerdictRun, OfColdCachesTheWholeFrameIsSimulated) {
+  std::vector<std::string> sets{"engine.what_if=true", "image.width=96", "image.height=72", "scene.triangles=20000"};
+  for (const char* set : {"rays.slots_per_resource=16", "memory.l2_kib=4096", "memory.dram_bytes_per_cycle=1",
+                          "memory.shape_buffer_kib=4", "testers.triangle.units=8", "testers.box.units=16"})
+    sets.emplace_back(set);
+  const Json frame = run(kTerrain, sets);
+  const Json& bottleneck = frame["bottleneck"];
+  ASSERT_TRUE(bottleneck["whole_frame"].get<bool>()) << bottleneck.dump(1);
+  EXPECT_EQ(bottleneck["paths"], 96 * 72 * 2);
+  EXPECT_EQ(bottleneck["rays"], frame["rays"]["completed"]);
+  EXPECT_EQ(bottleneck["deviation"], 0);
+  const std::string named = bottleneck["cold_caches"]["named"];
+  const Json& gains = bottleneck["gains"];
+  const auto gain = std::find_if(gains.begin(), gains.end(), [&](const Json& one) { return one["name"] == named; });
+  ASSERT_NE(gain, gains.end());
+  EXPECT_EQ((*gain)["together"], 1);
+  sets[0] = "engine.what_if=false";
+  for (const Json& set : (*gain)["sets"]) sets.push_back(set);
+  const double real =
+      frame["engine"]["cycles"].get<double>() / run(kTerrain, sets)["engine"]["cycles"].get<double>() - 1;
+  EXPECT_NEAR((*gain)["gain"].get<double>(), real, 1e-9);
 }
 
 // Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are

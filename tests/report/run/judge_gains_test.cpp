@@ -72,7 +72,7 @@ TEST(JudgeGains, SaysThatTheFrameIsTooSmall) {
   EXPECT_THAT(b.limits, IsEmpty());
   EXPECT_EQ(b.verdict,
             "not found out: 12,000 paths for 8,192 ray slots mostly fill and drain the machine (31 % of the rays lie "
-            "between); from some 36,000 paths on, or with fewer slots, most would; a search may take more");
+            "between); from some 36,000 paths on, or with fewer slots, it can be said");
 }
 
 TEST(JudgeGains, AClassOfAGroupIsARivalAndNotNamed) {
@@ -82,6 +82,14 @@ TEST(JudgeGains, AClassOfAGroupIsARivalAndNotNamed) {
   const Bottleneck b = judge_gains(found);
   EXPECT_EQ(b.limits, "boxes");
   EXPECT_THAT(b.rivals, ElementsAre("links", "ports"));
+}
+
+TEST(JudgeGains, SaysWhatWasNotTried) {
+  Bottleneck found{.gains = {gain("boxes", 0.3, 0.2, 0.4)}};
+  found.untried = {{"shading", "twice shading.workers", "shading.workers: expected 1 to 256, found 400"}};
+  EXPECT_EQ(judge_gains(found).verdict,
+            "boxes: twice boxes gains +30.0 % (+20.0 to +40.0 %); not tried: shading (shading.workers: expected 1 to "
+            "256, found 400)");
 }
 
 TEST(JudgeGains, SaysThatASearchWouldTakeTooLong) {
