@@ -7,6 +7,7 @@
 #include "core/config/config.h"
 #include "core/config/graph/lane_rings.h"
 #include "core/config/graph/ring.h"
+#include "core/config/graph/routes.h"
 #include "core/config/key_conditions.h"
 
 // The conditions under which parts of a machine are in use, for the table of key_conditions.cpp.
@@ -81,6 +82,12 @@ inline constexpr Condition kNative{[](const C& c, const S&) { return c.engine.ki
 inline constexpr Condition kClock{
     [](const C& c, const S&) { return c.engine.kind == EngineKind::kCycle || c.faults.any(); },
     "the native engine has no clock"};
+inline constexpr Condition kLinkTime{
+    [](const C& c, const S&) {
+      return c.engine.kind == EngineKind::kCycle ||
+             (c.topology.shape == TopologyShape::kGraph && config::latencies_choose_ways(c.topology));
+    },
+    kCycle.otherwise};
 inline constexpr Condition kPicture{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRays; },
                                     "the workload has no picture"};
 inline constexpr Condition kFlags{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRays; },

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <tuple>
 #include <utility>
@@ -136,6 +137,50 @@ std::uint32_t root_of(const Graph& graph) {
     }
   }
   return best;
+}
+
+namespace {
+
+/// Tells whether from some node packets come to another by more than one of its links, and not back through it.
+bool has_choices(const Graph& graph, std::size_t lane) {
+  const std::size_t nodes = graph.nodes.size();
+  Links out(nodes);  // the ends of the links
+  for (const Graph::Link& link : graph.links)
+    if (link.is_for(lane)) out[link.from].push_back(link.to);
+  for (std::uint32_t start = 0; start < nodes; ++start) {
+    std::vector<std::uint32_t> by(nodes, Routes::kNone);  // the node behind `start` through which each is reached
+    for (const std::uint32_t first : out[start]) {
+      if (by[first] != Routes::kNone) return true;
+      by[first] = first;
+      std::vector<std::uint32_t> open{first};
+      for (std::size_t i = 0; i < open.size(); ++i)
+        for (const std::uint32_t next : out[open[i]]) {
+          if (next == start || by[next] == first) continue;
+          if (by[next] != Routes::kNone) return true;
+          by[next] = first;
+          open.push_back(next);
+        }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool latencies_choose_ways(const TopologyConfig& config) {
+  std::vector<GraphIssue> ignored;
+  const Graph graph = draw_graph(config, ignored).only(Carried::kPackets);
+  if (is_added(graph.routing)) return true;      // a plugin is told them
+  std::set<std::optional<std::size_t>> said_by;  // entries; topology.link
+  for (const Graph::Link& link : graph.links)
+    said_by.insert(config.links[link.entry].latency_cycles ? std::optional(link.entry) : std::nullopt);
+  const bool nearest = config.tour == Tour::kNearest && graph.resources > 2,
+             nodes = std::ranges::any_of(config.nodes, [](const auto&one) { return one.latency_cycles > 0; });
+  if (nearest && (nodes || said_by.size() > 1)) return true;
+  if (said_by.size() < 2) return false;
+  for (std::size_t lane = 0; lane < graph.lanes; ++lane)
+    if (has_choices(graph, lane)) return true;
+  return false;
 }
 
 Routes::Routes(const Graph& graph, std::size_t lane)

@@ -50,4 +50,9 @@ class Routes {
 /// links in either direction; of several, the first.
 std::uint32_t root_of(const Graph& graph);
 
+/// Tells whether the latencies of links, or of nodes where packets visit the nearest owner next, may decide which way a
+/// packet takes. They do not where each node has one way to each other, nor where all links have one latency by one
+/// key.
+bool latencies_choose_ways(const TopologyConfig& config);
+
 }  // namespace carousel::config

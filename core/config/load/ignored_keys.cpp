@@ -10,8 +10,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/config/differences.h"
+#include "core/config/graph/routes.h"
+#include "core/config/machine_conditions.h"
 #include "core/config/write.h"
 #include "core/system/error.h"
+#include "core/types/added_names.h"
 
 namespace carousel {
 
@@ -52,6 +55,43 @@ void add_own(const LocatedConfig& located, const SceneFacts& scene, std::vector<
   });
 }
 
+/// The keys of drawn nodes and links, and the clocks that these name, that the machine cannot feel.
+void add_drawn(const LocatedConfig& located, const SceneFacts& scene, std::vector<IgnoredKey>& out) {
+  const Config& c = located.config;
+  const TopologyConfig& t = c.topology;
+  if (t.shape != TopologyShape::kGraph || unused_because(c, scene, "topology.nodes")) return;
+  const auto add = [&](bool given, std::string_view why, std::string key) {
+    if (given) out.push_back({key, why, located.positions.find(key)});
+  };
+  const bool native = c.engine.kind == EngineKind::kNative, choose = !native || config::latencies_choose_ways(t),
+             silent = drawn_pools(t).silent > 0;
+  const std::string_view no_clock = conditions::kCycle.otherwise,
+                         one_pool = "the native engine has one pool of all shader workers";
+  for (std::size_t i = 0; i < t.nodes.size(); ++i) {
+    const GraphNode& node = t.nodes[i];
+    const auto of = [&](const char* key) { return fmt::format("topology.nodes.{}.{}", i, key); };
+    add(node.claim_cycles > 0 && c.workload.kind != WorkloadConfig::Kind::kTraffic, conditions::kChannels.otherwise,
+        of("claim_cycles"));
+    if (!native) continue;
+    add(node.latency_cycles > 0 && !(choose && t.tour == Tour::kNearest), no_clock, of("latency_cycles"));
+    add(node.credit_cycles > 0, no_clock, of("credit_cycles"));
+    add(node.forward != Forward::kHead, no_clock, of("forward"));
+    add(!node.clock.empty(), no_clock, of("clock"));
+    if (node.kind != GraphNodeKind::kShading) continue;
+    add(!node.serves.empty(), one_pool, of("serves"));
+    add(node.workers && silent, one_pool, of("workers"));  // else they are all workers
+  }
+  for (std::size_t i = 0; i < t.links.size() && native; ++i) {
+    const GraphLink& link = t.links[i];
+    const auto of = [&](const char* key) { return fmt::format("topology.links.{}.{}", i, key); };
+    const bool packets = std::ranges::count(link.carries, Carried::kPackets) > 0;
+    add(link.latency_cycles && !(packets && choose), no_clock, of("latency_cycles"));
+    add(link.bytes_per_cycle && !is_added(t.routes), no_clock, of("bytes_per_cycle"));  // a plugin is told it
+    add(!link.clock.empty(), no_clock, of("clock"));
+  }
+  for (const auto& [name, mhz] : c.clocks.others) add(native, no_clock, "clocks." + name);
+}
+
 bool is_set_by_option(const SourcePosition& position) {
   return position.file.starts_with("--set ");
 }
@@ -74,6 +114,7 @@ std::vector<IgnoredKey> ignored_keys(const LocatedConfig& located, const SceneFa
     if (!resolved || differs || is_set_by_option(position)) out.push_back({key, *why, position});
   }
   add_own(located, scene, out);
+  add_drawn(located, scene, out);
   std::ranges::sort(out, {}, &IgnoredKey::key);
   return out;
 }

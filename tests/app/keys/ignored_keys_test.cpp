@@ -163,6 +163,74 @@ TEST_F(IgnoredKeys, AreThoseThatTheUserSets) {
   EXPECT_THAT(ignored(kTerrain, prices), ElementsAre("energy.shade"));
 }
 
+// All pools are one there, links and routers have no time, and latencies still choose the ways of packets, if there is
+// more than one.
+TEST_F(IgnoredKeys, OfADrawingInTheNativeEngine) {
+  const auto drawing = [&](const std::string& ring, const std::string& more = "") {
+    program_.write(
+        "drawn.yaml",
+        "scene: {builtin: terrain, triangles: 300}\nimage: {width: 16, height: 12}\n"
+        "engine: {kind: native, threads: 1}\nclocks: {slow: 500, noc: 900, synchroniser_cycles: 3}\n"
+        "shading: {workers: 3}\ntopology:\n  shape: graph\n" +
+            more +
+            "  nodes:\n    - {name: r, count: 4}\n"
+            "    - {name: x, kind: router, latency_cycles: 2, credit_cycles: 1, claim_cycles: 1, forward: whole, "
+            "clock: slow}\n"
+            "    - {name: s, kind: shading, serves: 'r[0..1]', workers: 2}\n    - {name: t, kind: shading}\n"
+            "  links:\n    - {" +
+            ring +
+            ", latency_cycles: 9, bytes_per_cycle: 8, clock: slow}\n"
+            "    - {from: 'r[*]', all_to: 's, t', both: true, carries: [completed_rays], latency_cycles: 5}\n");
+    std::vector<std::string> out;
+    for (const IgnoredKey& one :
+         app::prepare({(program_.folder() / "drawn.yaml").string(), {}}, {.force = true}, false).ignored())
+      out.push_back(one.key);
+    return out;
+  };
+  std::vector<std::string> expected{"clocks.noc",
+                                    "clocks.slow",
+                                    "clocks.synchroniser_cycles",
+                                    "topology.links.0.bytes_per_cycle",
+                                    "topology.links.0.clock",
+                                    "topology.links.0.latency_cycles",
+                                    "topology.links.1.latency_cycles",
+                                    "topology.nodes.1.claim_cycles",
+                                    "topology.nodes.1.clock",
+                                    "topology.nodes.1.credit_cycles",
+                                    "topology.nodes.1.forward",
+                                    "topology.nodes.1.latency_cycles",
+                                    "topology.nodes.2.serves",
+                                    "topology.nodes.2.workers"};
+  EXPECT_EQ(drawing("ring: 'r[*], x'"), expected);
+  // With a chord, the way from r[3] to r[0] depends on how long the links are.
+  const std::string chord = "ring: 'r[*], x', latency_cycles: 9}\n    - {from: 'r[3]', to: 'r[0]'";
+  const auto diameter = [&](const std::string& links) {
+    drawing(links);
+    return KeyOutcome::Json::parse(program_.run({"check", "drawn.yaml", "--json"}).out)["graph"]["diameter"];
+  };
+  const std::vector<std::string> named = drawing(chord);
+  EXPECT_THAT(named, testing::Not(testing::Contains("topology.links.0.latency_cycles")));
+  EXPECT_THAT(named, testing::Contains("topology.links.2.latency_cycles"));
+  EXPECT_NE(diameter(chord), diameter("ring: 'r[*], x', latency_cycles: 1}\n    - {from: 'r[3]', to: 'r[0]'"));
+  // Where all links have one latency, its number chooses none.
+  EXPECT_THAT(drawing("ring: 'r[*], x', both: true"), testing::Contains("topology.links.0.latency_cycles"));
+  EXPECT_THAT(drawing("ring: 'r[*], x'", "  tour: nearest\n"),
+              testing::Not(testing::Contains("topology.nodes.1.latency_cycles")));
+  // Workers that each pool names are all workers.
+  drawing("ring: 'r[*], x'");
+  const auto workers = [&](int of_t) {
+    const std::vector<std::string> sets{"shading.workers=auto", "topology.nodes.3.workers=" + std::to_string(of_t)};
+    std::vector<std::string> words{"run", "drawn.yaml", "--json", "--force"};
+    add_sets(words, sets);
+    const KeyOutcome::Json report = KeyOutcome::Json::parse(program_.run(words).out);
+    EXPECT_THAT(report["ignored_keys"].get<std::vector<std::string>>(),
+                testing::Not(testing::Contains("topology.nodes.3.workers")));
+    return report["shading"]["workers"];
+  };
+  EXPECT_EQ(workers(1), 3);
+  EXPECT_EQ(workers(4), 6);
+}
+
 TEST_F(IgnoredKeys, OfAResolvedConfigurationAreNotItsDefaults) {
   program_.write("resolved.yaml",
                  resolved_yaml(app::prepare(arguments(kTerrain, {"topology.rings=3"}), {}, false).config()));
