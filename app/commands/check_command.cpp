@@ -21,9 +21,9 @@
 #include "core/config/write.h"
 #include "report/csv/ray_csv.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 #include "ringbus/cycle/parcels/parcel_plan.h"
 #include "ringbus/protocol/deadlock.h"
-#include "ringbus/time/machine_clocks.h"
 #include "ringbus/topology/drawn_shape.h"
 #include "ringbus/topology/graph_facts.h"
 
@@ -130,12 +130,13 @@ std::string check_text(const Prepared& p, const ringbus::DeadlockVerdict& verdic
   if (const std::vector<IgnoredKey> ignored = p.ignored(); !ignored.empty())
     text += fmt::format("ignored: {}\n", ignored_text(ignored));
   if (p.config().topology.shape == TopologyShape::kGraph) {
-    text += graph_facts_text(p.config().topology, p.config().workload.kind == WorkloadConfig::Kind::kTraffic);
-    text += ringbus::parcel_facts(
-        ringbus::plan_parcels(p.config().topology, p.config().memory.line_bytes),
-        ringbus::MachineClocks(p.config().engine.clock_mhz, p.config().clocks.synchroniser_cycles));
+    const bool traffic = p.config().workload.kind == WorkloadConfig::Kind::kTraffic;
+    text += report::singular(
+        graph_facts_text(p.config().topology, traffic) +
+        ringbus::parcel_facts(ringbus::plan_parcels(p.config().topology, p.config().memory.line_bytes)));
   }
-  text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible", verdict.rule);
+  text += fmt::format("deadlock: {}. {}\n", verdict.can_deadlock ? "possible" : "impossible",
+                      report::singular(verdict.rule));
   return resolved_yaml(p.absolute_config()) + "\n" + commented(text);
 }
 

@@ -8,6 +8,7 @@
 
 #include "core/config/graph/lane_rings.h"
 #include "core/config/graph/ring.h"
+#include "core/config/graph/way_time.h"
 #include "core/system/error.h"
 #include "ringbus/topology/graph/channel_classes.h"
 #include "ringbus/topology/graph/dependencies.h"
@@ -110,14 +111,15 @@ GraphFacts graph_facts(const TopologyConfig& config, bool traffic) {
   std::vector<double> loads(graph.links.size());  // of a packet from each resource to each
   double packets = 0, nodes = 0, cycles = 0;
   const auto add_way = [&](const Routes& routes, std::uint32_t from, std::uint32_t to, double part) {
-    std::int64_t way = 0;
+    config::WayTime time(graph);
     std::uint64_t links = 0;
     routes.for_each_link(from, to, [&](std::uint32_t link) {
-      way += graph.nodes[graph.links[link].from].drawn->latency_cycles + graph.links[link].latency_cycles;
+      time.go(graph.links[link]);
       ++pairs[link];
       loads[link] += part;
       ++links;
     });
+    const std::int64_t way = time.cycles();
     ++facts.ways;
     facts.diameter = std::max(facts.diameter, links);
     packets += part;
@@ -146,10 +148,14 @@ GraphFacts graph_facts(const TopologyConfig& config, bool traffic) {
     }
   }
   std::uint32_t busiest = 0;
+  const auto per_core = [&](const Graph::Link& link) {  // its cycles in one of the resources
+    return link.mhz == 0 ? 1.0 : static_cast<double>(link.mhz) / static_cast<double>(graph.core_mhz);
+  };
   // Rings side by side share the ways between their stops.
   const auto load = [&](std::uint32_t link) {
     const std::int64_t rings = config.links[graph.links[link].entry].stops.rings;
-    return loads[link] / static_cast<double>(graph.links[link].bytes_per_cycle * rings);
+    const auto bytes = static_cast<double>(graph.links[link].bytes_per_cycle * rings);
+    return loads[link] / (bytes * per_core(graph.links[link]));
   };
   const auto ends = [&](std::uint32_t link) { return std::tuple(graph.links[link].from, graph.links[link].to); };
   for (std::uint32_t link = 1; link < graph.links.size(); ++link)

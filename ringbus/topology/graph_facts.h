@@ -32,13 +32,14 @@ struct GraphFacts {
   std::string bus;         ///< that all packets cross; empty without one
   std::string served;      ///< a line that says which packet process serves which resources; empty without such
   double mean_nodes = 0;   ///< on a way, first and last included
-  double mean_cycles = 0;  ///< that links and the nodes before them take
+  double mean_cycles = 0;  ///< of the resources, that links and the nodes before them take
   std::string longest_from, longest_to;
   std::int64_t longest_cycles = 0;
   std::uint64_t diameter = 0;       ///< most links on a way
-  std::string busiest;              ///< the link, or bus, that most ways use for its width
+  std::string busiest;              ///< the link, or bus, that most ways use for its width and clock
   std::uint64_t busiest_pairs = 0;  ///< ways over it
-  /// Load at which the busiest link would be full: flits of the width of topology.link for each resource and cycle.
+  /// Load at which the busiest link would be full: flits of the width of topology.link for each resource and cycle of
+  /// the resources.
   double bound = 0;
   Cut halves;                     ///< the narrowest cut
   std::string halves_links;       ///< a few of its links by name

@@ -220,7 +220,7 @@ void describe(V& v, GraphNode& c) {
       "The resources that ask a cache, such as r[0..7]; left out, all. The nodes of a group hold lines in turn. Or "
       "the resources whose rays a packet_process collects, or whose completed rays come to the workers of a node of "
       "the kind shading: of a group, each serves an equal run of them. Left out at shading, they are those to which "
-      "it is the nearest such node by latency; of several as near, the first takes them.");
+      "it is the nearest such node in time; of several as near, the first takes them.");
   v.own_key(kPoolWorkers, c.workers).relax("shading", Better::kTwice);
   v.field_or_auto("interleave_bytes", c.interleave_bytes, IntRange{16, 1 << 20}, "bytes",
                   "The bytes that a cache of a group, or a memory, holds before the next one's turn; auto is a line.");

@@ -138,6 +138,8 @@ struct TopologyConfig {
   std::vector<GraphWay> ways;
   Tour tour = Tour::kNames;
   ChannelRule channels = ChannelRule::kAny;
+  std::int64_t core_mhz = 1000;          ///< engine.clock_mhz, once the configuration has been read
+  std::int64_t synchroniser_cycles = 0;  ///< clocks.synchroniser_cycles, likewise
 };
 
 /// The properties of the configured network: the resources of a graph trace their own rays where it says so.

@@ -18,6 +18,8 @@ std::vector<std::string> ClockTable::names() const {
 }
 
 void name_clocks(TopologyConfig& topology, const ClockTable& clocks, bool traffic) {
+  topology.core_mhz = clocks.core_mhz;
+  topology.synchroniser_cycles = clocks.clocks.synchroniser_cycles;
   if (topology.shape != TopologyShape::kGraph) return;
   const auto resolve = [&](const std::string& name, std::string_view otherwise) {
     const std::int64_t mhz = clocks.of(name.empty() ? otherwise : std::string_view(name)).value_or(clocks.core_mhz);

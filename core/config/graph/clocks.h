@@ -22,9 +22,9 @@ struct ClockTable {
   std::vector<std::string> names() const;
 };
 
-/// Fills in the clocks of a graph's nodes and links: those that they name; otherwise noc at links and routers and, with
-/// synthetic traffic, at all nodes, of which the others go by core with rays. A name that is no clock is left out;
-/// check_rings() says so.
+/// Fills in the clocks of the machine, and of a graph's nodes and links: those that they name; otherwise noc at links
+/// and routers and, with synthetic traffic, at all nodes, of which the others go by core with rays. A name that is no
+/// clock is left out; check_rings() says so.
 void name_clocks(TopologyConfig& topology, const ClockTable& clocks, bool traffic);
 
 /// A clock by which nodes or links go, by the name that the configuration has for it.

@@ -40,6 +40,8 @@ class Drawing {
       return {};
     }
     graph_.stacks = !properties_of(config_).has_packets;
+    graph_.core_mhz = config_.core_mhz;
+    graph_.synchroniser_cycles = config_.synchroniser_cycles;
     if (managers_of(config_) > 0) find_served(config_, graph_, issues_);
     for (entry_ = 0; entry_ < config_.links.size(); ++entry_) {
       const GraphLink& link = config_.links[entry_];

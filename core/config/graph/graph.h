@@ -53,6 +53,8 @@ struct Graph {
   std::optional<std::uint32_t> root;  ///< the node at the top for up_down, if it is named
   std::vector<Hop> hops;              ///< the ways that are given, each node, destination and lane once
   bool stacks = false;                ///< resources trace their own rays, and there are no packets
+  std::int64_t core_mhz = 1000;       ///< of the resources
+  std::int64_t synchroniser_cycles = 0;
   /// By resource: the packet process that keeps its collections, itself for one of these. Empty: each keeps its own.
   std::vector<std::uint32_t> manager_of;
 

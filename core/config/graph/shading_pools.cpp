@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "core/config/graph/routes.h"
+#include "core/config/graph/way_time.h"
 
 namespace carousel::config {
 
@@ -86,8 +87,8 @@ class PoolFinder {
     return true;
   }
 
-  /// The resources that no pool names go to the nearest of these: by the latency of the way of completed rays, or where
-  /// these travel beside the links of the way of new ones. Of several as near, to the first.
+  /// The resources that no pool names go to the nearest of these: by the time that the way of completed rays takes, or
+  /// where these travel beside the links that of new ones. Of several as near, to the first.
   void take_nearest(const std::vector<std::size_t>& pools, std::vector<std::size_t>& of) const {
     const Carried what = parts_.completed_rays ? Carried::kCompletedRays : Carried::kNewRays;
     const Graph links = graph_.only(what);
@@ -99,15 +100,14 @@ class PoolFinder {
       for (const std::size_t pool : pools) {
         const std::uint32_t node = parts_.pools[pool];
         const auto [from, to] = parts_.completed_rays ? std::pair{r, node} : std::pair{node, r};
-        std::int64_t cycles = 0;
+        WayTime way(links);
         bool any = false;
         routes.for_each_link(from, to, [&](std::uint32_t link) {
-          const Graph::Link& on = links.links[link];
-          cycles += links.nodes[on.from].drawn->latency_cycles + on.latency_cycles;
+          way.go(links.links[link]);
           any = true;
         });
-        if (!any || cycles >= least) continue;
-        least = cycles;
+        if (!any || way.cycles() >= least) continue;
+        least = way.cycles();
         of[r] = pool;
       }
     }

@@ -28,10 +28,11 @@ void check_workers(const Config& config, const DrawnPools& drawn, const RuleBrea
     return;
   }
   if (all - drawn.workers >= drawn.silent) return;
-  breach("topology.nodes",
-         fmt::format("of {} workers (shading.workers) {} are those of pools that name them, and {} pools share the "
-                     "rest; expected a worker at least for each, or `workers` at all of them",
-                     all, drawn.workers, drawn.silent));
+  breach(
+      "topology.nodes",
+      fmt::format("of shading.workers, {}, pools that name theirs have {}, and {} the rest; expected a worker at "
+                  "least for each, or `workers` at all pools",
+                  all, drawn.workers, drawn.silent == 1 ? "1 pool has" : fmt::format("{} pools share", drawn.silent)));
 }
 
 /// Refuses what a machine has once, beside or behind its only pool.

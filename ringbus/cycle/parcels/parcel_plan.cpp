@@ -7,8 +7,8 @@
 #include <fmt/format.h>
 
 #include "core/config/graph/ring.h"
+#include "core/config/graph/way_time.h"
 #include "core/system/error.h"
-#include "ringbus/cycle/parcels/way_time.h"
 #include "ringbus/topology/graph/routes.h"
 #include "ringbus/topology/graph_facts.h"
 #include "ringbus/topology/wire_length.h"
@@ -44,13 +44,12 @@ Nodes nearest_resources(const Graph& graph) {
 }
 
 /// The longest way from any to any, by latency.
-std::string longest_way(const Graph& graph, const Routes& routes, const Nodes& starts, const Nodes& ends,
-                        const MachineClocks& clocks) {
-  std::optional<Cycle> longest;
+std::string longest_way(const Graph& graph, const Routes& routes, const Nodes& starts, const Nodes& ends) {
+  std::optional<std::int64_t> longest;
   std::string text;
   for (const std::uint32_t from : starts)
     for (const std::uint32_t to : ends) {
-      WayTime way(graph, clocks);
+      config::WayTime way(graph);
       routes.for_each_link(from, to, [&](std::uint32_t link) { way.go(graph.links[link]); });
       if (longest && way.cycles() <= *longest) continue;
       longest = way.cycles();
@@ -119,7 +118,7 @@ ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes) {
   return plan;
 }
 
-std::string parcel_facts(const ParcelPlan& plan, const MachineClocks& clocks) {
+std::string parcel_facts(const ParcelPlan& plan) {
   if (!plan.any()) return "";
   const Graph& graph = plan.graph;
   const Nodes caches = graph.of_kind(GraphNodeKind::kCache);
@@ -137,10 +136,10 @@ std::string parcel_facts(const ParcelPlan& plan, const MachineClocks& clocks) {
     for (std::uint32_t r = 0; r < graph.resources; ++r)
       if (plan.parts.caches_of[r] == group) served.push_back(r);
     out += fmt::format("ways to {}: {}\n", graph.nodes[plan.parts.caches[group].nodes.front()].name,
-                       longest_way(shapes, routes, served, plan.parts.caches[group].nodes, clocks));
+                       longest_way(shapes, routes, served, plan.parts.caches[group].nodes));
   }
   if (!plan.parts.memories.nodes.empty())
-    out += fmt::format("ways to memory: {}\n", longest_way(shapes, routes, caches, plan.parts.memories.nodes, clocks));
+    out += fmt::format("ways to memory: {}\n", longest_way(shapes, routes, caches, plan.parts.memories.nodes));
   return out;
 }
 

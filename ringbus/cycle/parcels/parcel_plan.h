@@ -7,7 +7,6 @@
 
 #include "core/config/graph/drawn_parts.h"
 #include "core/config/graph/graph.h"
-#include "ringbus/time/machine_clocks.h"
 
 namespace carousel::ringbus {
 
@@ -53,6 +52,6 @@ struct ParcelPlan {
 ParcelPlan plan_parcels(const TopologyConfig& config, std::int64_t line_bytes);
 
 /// Lines for people: the parts and the longest ways to them, in cycles of the resources.
-std::string parcel_facts(const ParcelPlan& plan, const MachineClocks& clocks);
+std::string parcel_facts(const ParcelPlan& plan);
 
 }  // namespace carousel::ringbus

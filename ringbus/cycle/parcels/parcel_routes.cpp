@@ -1,6 +1,6 @@
 #include "ringbus/cycle/parcels/parcel_routes.h"
 
-#include "ringbus/cycle/parcels/way_time.h"
+#include "core/config/graph/way_time.h"
 #include "ringbus/topology/graph/routes.h"
 
 namespace carousel::ringbus::cycle {
@@ -24,14 +24,14 @@ ParcelRoutes::ParcelRoutes(const ParcelPlan& plan)
     find_exits(plan, what, ports);
 }
 
-Cycle ParcelRoutes::cycles(Carried what, std::uint32_t from, std::uint32_t to, const MachineClocks& clocks) const {
-  WayTime way(plan_.graph, clocks);
+Cycle ParcelRoutes::cycles(Carried what, std::uint32_t from, std::uint32_t to) const {
+  config::WayTime way(plan_.graph);
   for (std::uint32_t at = from; at != to;) {
     const Graph::Link& link = plan_.drawn(plan_.links[out_[at][exit(what, at, to).port]]);
     way.go(link);
     at = link.to;
   }
-  return way.cycles();
+  return static_cast<Cycle>(way.cycles());
 }
 
 void ParcelRoutes::find_exits(const ParcelPlan& plan, Carried what, const std::vector<std::uint32_t>& ports) {

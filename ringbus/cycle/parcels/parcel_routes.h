@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "ringbus/cycle/parcels/parcel_plan.h"
-#include "ringbus/time/machine_clocks.h"
+#include "ringbus/time/clock.h"
 
 namespace carousel::ringbus::cycle {
 
@@ -23,7 +23,7 @@ class ParcelRoutes {
     return exits_[(static_cast<std::size_t>(what) * nodes_ + node) * nodes_ + stop];
   }
   /// The cycles of the resources that a way takes: the latencies of its links and of the nodes before them.
-  Cycle cycles(Carried what, std::uint32_t from, std::uint32_t to, const MachineClocks& clocks) const;
+  Cycle cycles(Carried what, std::uint32_t from, std::uint32_t to) const;
   /// The links that leave or enter a node, by their places in the plan; those that leave are in the order of ports.
   const std::vector<std::uint32_t>& out(std::uint32_t node) const { return out_[node]; }
   const std::vector<std::uint32_t>& in(std::uint32_t node) const { return in_[node]; }

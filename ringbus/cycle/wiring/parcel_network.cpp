@@ -202,8 +202,7 @@ Cycle ParcelNetwork::way_to_memory(std::uint32_t resource) const {
   if (plan_.parts.caches.empty()) return 0;
   if (const auto& of = plan_.graph.manager_of; !of.empty() && of[resource] == resource) return 0;  // it reads no shapes
   const auto there_and_back = [this](std::uint32_t from, std::uint32_t to) {
-    return routes_.cycles(Carried::kShapes, from, to, clocks_) + routes_.cycles(Carried::kShapes, to, from, clocks_) +
-           2 * kDoorCycles;
+    return routes_.cycles(Carried::kShapes, from, to) + routes_.cycles(Carried::kShapes, to, from) + 2 * kDoorCycles;
   };
   Cycle longest = 0;
   for (const std::uint32_t cache : plan_.parts.caches[plan_.parts.caches_of[resource]].nodes) {

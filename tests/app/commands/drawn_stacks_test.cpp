@@ -110,8 +110,8 @@ TEST(DrawnStacks, CheckSaysPartsAndVerdict) {
   program.write("clusters.yaml", kScene + kClusters);
   const Outcome check = program.run({"check", "clusters.yaml"});
   ASSERT_EQ(check.status, 0) << check.err;
-  EXPECT_THAT(check.out, HasSubstr("# graph: 8 resources, 1 routers, 0 links of one way\n"));
-  EXPECT_THAT(check.out, HasSubstr("# parts: 2 caches, 1 memories, 1 shading, 38 links that carry no packets\n"));
+  EXPECT_THAT(check.out, HasSubstr("# graph: 8 resources, 1 router, 0 links of one way\n"));
+  EXPECT_THAT(check.out, HasSubstr("# parts: 2 caches, 1 memory, 1 shading, 38 links that carry no packets\n"));
   EXPECT_THAT(check.out, HasSubstr("# ways to a: 4 cycles at most, from left[0] to a\n"));
   EXPECT_THAT(check.out, HasSubstr("# deadlock: impossible. independent: every resource traces its own rays"));
   // 4 cycles of 2 ns, behind a synchroniser of two of them and before one of two of 1 ns.

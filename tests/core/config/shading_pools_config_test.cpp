@@ -59,6 +59,29 @@ TEST(ShadingPoolsConfig, AResourceGoesToTheNearestByLatencyAndOfEqualOnesToTheFi
               ElementsAre(1, 1, 1, 1, 0, 1));  // by the way of new rays, where completed ones have wires
 }
 
+// 4 cycles of 4 ns on the way to s[0], with 2 more in its synchroniser and 2 ns in that of the pool: 26 ns.
+TEST(ShadingPoolsConfig, TheNearestIsThatOfTheLeastTime) {
+  const auto pools = [](int far) {
+    return pools_of(machine("    - {name: s, kind: shading, count: 2}\n",
+                            "    - {from: 'r[*]', to: 's[0]', both: true, latency_cycles: 4, clock: slow, carries: "
+                            "[new_rays, completed_rays]}\n"
+                            "    - {from: 'r[0..2]', to: 's[1]', both: true, latency_cycles: 30, carries: [new_rays, "
+                            "completed_rays]}\n"
+                            "    - {from: 'r[3..5]', to: 's[1]', both: true, latency_cycles: " +
+                                std::to_string(far) + ", carries: [new_rays, completed_rays]}\n",
+                            "clocks: {slow: 250}\n"));
+  };
+  EXPECT_THAT(pools(9), ElementsAre(0, 0, 0, 1, 1, 1));
+  EXPECT_THAT(pools(25), ElementsAre(0, 0, 0, 1, 1, 1));
+  EXPECT_THAT(texts(issues_of(machine("    - {name: s, kind: shading, count: 2}\n",
+                                      "    - {from: 'r[*]', to: 's[0]', both: true, latency_cycles: 4, clock: slow, "
+                                      "carries: [new_rays, completed_rays]}\n"
+                                      "    - {from: 'r[*]', to: 's[1]', both: true, latency_cycles: 26, carries: "
+                                      "[new_rays, completed_rays]}\n",
+                                      "clocks: {slow: 250}\n"))),
+              ElementsAre(HasSubstr("no rays come to s[1]")));  // 26 and 26 ns: the first one
+}
+
 TEST(ShadingPoolsConfig, APoolTakesTheResourcesThatItServes) {
   EXPECT_THAT(pools_of(machine("    - {name: s, kind: shading, count: 3, serves: 'r[5..0]'}\n", to_all())),
               ElementsAre(2, 2, 1, 1, 0, 0));
@@ -157,7 +180,11 @@ TEST(ShadingPoolsConfig, WhatCannotWorkIsRefusedByName) {
                     "shading: {workers: 4}\n"),
             "shading.workers: each node of the kind shading names its workers; expected auto, found 4"},
         Bad{machine(two, to_all(), "shading: {workers: 1}\n"),
-            "topology.nodes: of 1 workers (shading.workers) 0 are those of pools that name them, and 2 pools share"},
+            "topology.nodes: of shading.workers, 1, pools that name theirs have 0, and 2 pools share the rest; "},
+        Bad{machine("    - {name: a, kind: shading, serves: 'r[0..2]', workers: 3}\n    - {name: b, kind: shading}\n",
+                    "    - {from: 'r[*]', all_to: 'a, b', both: true, carries: [new_rays]}\n",
+                    "shading: {workers: 3}\n"),
+            "topology.nodes: of shading.workers, 3, pools that name theirs have 3, and 1 pool has the rest; "},
         Bad{machine(two, to_all(), "rays: {placement: first_taker}\n"),
             "rays.placement: several nodes of the kind shading do not have this yet; expected balanced, found "
             "first_taker, or one such node"},
