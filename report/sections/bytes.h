@@ -11,7 +11,8 @@ void describe(V& v, const ByteRow& r) {
   v.field("from", r.from, "", "parts that send it");
   v.field("to", r.to, "", "parts that receive it");
   v.field("over", r.over, "", "wires or ports that it occupies");
-  v.field("width_bytes_per_cycle", r.width, "bytes/cycle", "width of each of these wires or ports");
+  v.field("width_bytes_per_cycle", r.width, "bytes/cycle",
+          "width of each of these wires or ports; that of DRAM is rounded to whole bytes");
   v.field("bytes", r.bytes, "bytes", "bytes sent; a checked build compares them with the bytes received");
   v.field("messages", r.messages, "messages", "messages sent");
 }

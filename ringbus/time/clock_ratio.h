@@ -32,6 +32,17 @@ class ClockRatio {
   Cycle before(Cycle network) const { return network * core_ / network_; }
   /// The last edge of the network's clock that is not after an edge of the resources'.
   Cycle floor_to_network(Cycle core) const { return core * network_ / core_; }
+  /// Of a time that is counted in the network's cycles, the part before `end` of the resources: of so many cycles that
+  /// ended by then, and, if `under_way`, of the one that has begun.
+  Cycle part_before(Cycle ended, bool under_way, Cycle end) const {
+    const Cycle begun = under_way ? end * network_ - floor_to_network(end) * core_ : 0;
+    return (ended * core_ + begun) / network_;
+  }
+  /// What goes by until `core` at `each` in a cycle of the network, rounded down.
+  std::uint64_t passed(Cycle core, std::uint64_t each) const {
+    const Cycle whole = floor_to_network(core);
+    return whole * each + (core * network_ - whole * core_) * each / core_;
+  }
   bool equal() const { return core_ == network_; }
   /// The network's cycles in a cycle of the resources.
   double network_per_core() const { return static_cast<double>(network_) / static_cast<double>(core_); }

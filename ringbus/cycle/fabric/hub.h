@@ -47,10 +47,11 @@ class Hub : public Agent {
   /// At a cycle of the resources, as these count.
   void read(Cycle at, std::span<std::uint64_t> row) const {
     if (from_core_.equal()) return read_ports(out_, at, 0, row);
-    read_ports(out_, from_core_.to_network(at), 0, row);
+    const Cycle edge = from_core_.floor_to_network(at);
+    read_ports(out_, edge, 0, row);
     for (std::size_t i = 0; i < out_.size(); ++i) {
       std::uint64_t& busy = row[counter_index(PortCounter::kBusy, i, 0)];
-      busy = std::min(at, from_core_.before(busy));
+      busy = from_core_.part_before(busy, out_[i].busy(edge + 1) > busy, at);
     }
   }
 

@@ -16,15 +16,18 @@ struct LinkRecorder {
   const TripTable* trips = nullptr;
   std::uint32_t track = 0;
   ClockRatio clock{};  ///< from the cycles of the resources, in which times are noted, to those of the sender
+  ClockRatio link{};   ///< to those of the link
   std::vector<PacketHistory>* histories = nullptr;  ///< of all packets
 
   bool wanted() const { return slices != nullptr || histories != nullptr; }
+  /// `begin` and `end` by the clock of the sender, `arrival` by that of the link: an edge of the sender's may be later
+  /// than what the packet does next.
   void note(const Token& token, Cycle begin, Cycle end, Cycle arrival) const {
     if (!clock.equal()) {
       begin = clock.before(begin);
       end = clock.to_core(end);
-      arrival = clock.to_core(arrival);
     }
+    arrival = link.to_core(arrival);
     // Answers are under way together.
     if (histories != nullptr && !token.passes && !token.answers) (*histories)[token.packet.value].sent(begin, arrival);
     if (slices == nullptr) return;

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <deque>
 #include <memory>
 #include <type_traits>
+#include <utility>
 
 #include "ringbus/cycle/fabric/link_recorder.h"
 #include "ringbus/cycle/fabric/token.h"
@@ -39,9 +41,29 @@ struct FarClock {
 /// passes a synchroniser, in which the next packet may be while the link still moves one.
 struct NearClock {
   ClockRatio to_link;
-  Cycle node_cycles = 0;  ///< by the sender's clock, before the link
-  Cycle link_free = 0;    ///< by the link's
-  Cycle busy = 0;         ///< likewise
+  Cycle node_cycles = 0;                            ///< by the sender's clock, before the link
+  Cycle link_free = 0;                              ///< by the link's
+  Cycle busy = 0;                                   ///< likewise
+  std::deque<std::pair<Cycle, Cycle>> stretches{};  ///< begin and end of each in which it moves something, likewise
+
+  /// It moves something for so many cycles until `end`. Earlier times than `now`, by the sender's clock, are not asked
+  /// for again.
+  void moves(Cycle now, Cycle end, Cycle cycles) {
+    link_free = end;
+    busy += cycles;
+    const Cycle past = to_link.floor_to_network(now);
+    while (!stretches.empty() && stretches.front().second <= past) stretches.pop_front();
+    if (!stretches.empty() && stretches.back().second == end - cycles)
+      stretches.back().second = end;
+    else
+      stretches.emplace_back(end - cycles, end);
+  }
+  /// The cycles before `edge` in which it moved something.
+  Cycle moved(Cycle edge) const {
+    Cycle later = 0;
+    for (const auto& [begin, end] : stretches) later += end - std::min(end, std::max(begin, edge));
+    return busy - later;
+  }
 
   /// The first cycle of the sender in which a packet may leave that the link begins to move at `edge` at the earliest.
   Cycle leaves_for(Cycle edge) const { return to_link.first_for(edge, node_cycles); }
@@ -163,15 +185,14 @@ class OutPortOf {
   /// Cycles before `end` in which the link moved something; not before the last packet was sent.
   Cycle busy(Cycle end = kNever) const {
     if (near_ != nullptr) [[unlikely]]
-      return near_->to_link.before(moved(end));
+      return busy_across(end);
     return free_at_ <= end ? busy_ : busy_ - std::min(busy_, free_at_ - end);
   }
   /// The same by the clock of the link; `end` by that of the sender.
   Cycle moved(Cycle end = kNever) const {
     if (near_ == nullptr) [[likely]]
       return busy(end);
-    const Cycle edge = end == kNever ? kNever : near_->to_link.to_network(end);
-    return near_->link_free <= edge ? near_->busy : near_->busy - std::min(near_->busy, near_->link_free - edge);
+    return end == kNever ? near_->busy : near_->moved(near_->to_link.to_network(end));
   }
   /// The first cycle in which another packet may be sent, for want of the link.
   Cycle free_at() const { return free_at_; }
@@ -187,6 +208,12 @@ class OutPortOf {
     bool cut_through = false;
   };
 
+  [[gnu::cold, gnu::noinline]] Cycle busy_across(Cycle end) const {
+    const ClockRatio& to_link = near_->to_link;
+    if (end == kNever) return to_link.before(near_->busy);
+    const Cycle edge = to_link.floor_to_network(end), ended = near_->moved(edge);
+    return to_link.part_before(ended, near_->moved(edge + 1) > ended, end);
+  }
   Cycle wants_to_start() const { return std::max(free_at_, queue_.front().ready); }
   Cycle next_credit() const {
     const Cycle credit = wire_->packets.next_return();
@@ -213,18 +240,12 @@ class OutPortOf {
     credits_ += made.places;
     if (made.busy == 0) return;
     if (near_ != nullptr) {
-      free_at_ = std::max(free_at_, moves(*near_, std::max(near_->link_free, by_link(now)) + made.busy, made.busy));
+      near_->moves(now, std::max(near_->link_free, by_link(now)) + made.busy, made.busy);
+      free_at_ = std::max(free_at_, near_->leaves_for(near_->link_free));
       return;
     }
     free_at_ = std::max(free_at_, now) + made.busy;
     busy_ += made.busy;
-  }
-  /// The link moves something for `busy` cycles of its own until `end`. Returns the first cycle in which another packet
-  /// may be sent.
-  static Cycle moves(NearClock& near, Cycle end, Cycle busy) {
-    near.link_free = end;
-    near.busy += busy;
-    return near.leaves_for(end);
   }
   [[gnu::always_inline]] void start(const T& token, Cycle now, bool cut_through) {
     const Cycle cycles = token.link_cycles;
@@ -235,7 +256,7 @@ class OutPortOf {
     wire_->packets.send(flight.arrival, token);
     if constexpr (std::is_same_v<T, Token>) {
       if (recorder_.wanted()) [[unlikely]]
-        recorder_.note(token, now, free_at_, near_ ? near_->to_link.to_core(flight.arrival) : flight.arrival);
+        recorder_.note(token, now, free_at_, flight.arrival);
     }
     --credits_;
     busy_ += flight.busy;
@@ -248,7 +269,8 @@ class OutPortOf {
     const Cycle edge = std::max(near.to_link.enter(now + near.node_cycles), near.link_free);
     Flight flight{edge + latency_ + (cut_through ? 0 : cycles - 1), edge + cycles, cycles};
     if (faults_) flight = uncertain_flight(edge, cycles, cut_through);
-    return {flight.arrival, std::max(now + 1, moves(near, flight.link_free, flight.busy)), 0};
+    near.moves(now, flight.link_free, flight.busy);
+    return {flight.arrival, std::max(now + 1, near.leaves_for(flight.link_free)), 0};
   }
   /// Out of line, as few links have faults.
   [[gnu::cold, gnu::noinline]] Flight uncertain_flight(Cycle now, Cycle cycles, bool cut_through) {

@@ -13,7 +13,8 @@ void Memory::run(Cycle end) {
     next_ = kNever;
     look_at(now, [this](Cycle at, std::span<std::uint64_t> row) {
       // Lines that have been asked for are moved without a gap.
-      row[0] = bytes() - (moved_ > at * width_ ? moved_ - at * width_ : 0);
+      const std::uint64_t by_now = from_core_.passed(at, width_);
+      row[0] = bytes() - (moved_ > by_now ? moved_ - by_now : 0);
     });
     for (const Client& client : clients_) {
       while (client.requests->next() <= now) {
@@ -30,7 +31,7 @@ void Memory::run(Cycle end) {
 
 void Memory::close(Cycle end) {
   samples_.close(end, [this, end](Cycle at, std::span<std::uint64_t> row) {
-    const std::uint64_t by_now = from_core_.to_network(at) * width_;
+    const std::uint64_t by_now = from_core_.passed(at, width_);
     row[0] = bytes() - (at < end && moved_ > by_now ? moved_ - by_now : 0);
   });
 }

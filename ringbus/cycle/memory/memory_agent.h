@@ -72,12 +72,13 @@ class MemoryAgent : public Agent {
   virtual Cycle moving() const = 0;
   virtual double width() const = 0;
 
-  /// Fills in the readings that are due before anything happens at `now`, each by `read(at, row)` with its time.
+  /// Fills in the readings that are due before anything happens at `now`, each by `read(at, row)` with its time by the
+  /// clock of the resources.
   template <class Read>
   void look_at(Cycle now, const Read& read) {
     const Cycle seen = from_core_.equal() ? now : from_core_.before(now);
     if (samples_.due(seen)) [[unlikely]]
-      samples_.until(seen, [&](Cycle at, std::span<std::uint64_t> row) { read(from_core_.to_network(at), row); });
+      samples_.until(seen, read);
   }
   Cycle next_request() const {
     Cycle first = kNever;

@@ -56,7 +56,9 @@ class LinkTime {
   /// Cycles before `end` in which the link moved something; not before the last of it began.
   Cycle busy(Cycle end = kNever) const {
     if (from_core_.equal()) return moved(end);
-    return std::min(end, from_core_.before(moved(end == kNever ? kNever : from_core_.to_network(end))));
+    if (end == kNever) return from_core_.before(moved(end));
+    const Cycle edge = from_core_.floor_to_network(end), ended = moved(edge);
+    return from_core_.part_before(ended, moved(edge + 1) > ended, end);
   }
   /// What waited for the link.
   Occupancy queue() const { return {from_core_.before(queue_.packet_cycles), queue_.most}; }

@@ -1,6 +1,8 @@
 #include "ringbus/cycle/wiring/memory_system.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 #include <utility>
 
 #include "ringbus/cycle/parcels/door.h"
@@ -76,7 +78,7 @@ MemorySystem::MemorySystem(ChannelList& list, const MemoryKinds& kinds, const st
   } else {
     memories_.push_back(make_memory(config, clocks.of(0), to_memory()));
   }
-  const auto width = static_cast<std::uint64_t>(peak_bytes_per_cycle());
+  const auto width = static_cast<std::uint64_t>(std::max(1.0, std::round(peak_bytes_per_cycle())));
   list.set_width(kinds.lines, width);
   list.set_width(kinds.written, width);
 }

@@ -102,6 +102,7 @@ class SimulatedMachine {
     for (std::size_t port = 0; port < out.size(); ++port) {
       LinkRecorder to = recorder_ ? recorder_->of_link(node, out[port]) : LinkRecorder{};
       if (times_ && !divided) to.histories = &times_->histories();
+      to.link = network_.clocks().from_core(shared_.topology.wires()[out[port]].mhz);
       record(port, to);
     }
   }

@@ -81,6 +81,49 @@ TEST_F(MachineClocks, SlowerClocksTakeLonger) {
   EXPECT_LT(cycles(clusters("")), at(1499, 2));  // nearly the same clock, but another one
 }
 
+// Though a cycle of a slow link may end in a later sample. Routers go by other clocks than their links here.
+TEST_F(MachineClocks, NoLinkIsBusierThanItsTime) {
+  for (const char* clocks :
+       {"clocks: {core: 1500, noc: 130, slow: 100}\n", "clocks: {core: 1500, noc: 2000, slow: 90}\n"})
+    for (const char* samples : {"report.samples=60", "report.samples=4000"}) {
+      const Json run = clusters(clocks, ", clock: slow", ", clock: slow", {samples});
+      const Json& series = run["time_series"];
+      const double interval = series["interval"];
+      std::size_t links = 0;
+      for (const Json& row : series["rows"]) {
+        const std::string part = row["part"];
+        if (!part.starts_with("link ") || row["quantity"] != "busy") continue;
+        double sum = 0;
+        for (const double share : row["values"]) {
+          ASSERT_LE(share, 1.0) << part << clocks << samples;
+          sum += share * interval;
+        }
+        EXPECT_NEAR(sum, run["links"][std::stoul(part.substr(5))]["cycles"]["busy"].get<double>(), 17) << part;
+        ++links;
+      }
+      EXPECT_GT(links, 12u);
+    }
+}
+
+// From r[0], 7 cycles of 2 ns behind two in the synchroniser; the router's 3 and the link's 5; back to the clock of the
+// resources and through its synchroniser: 2 * (2 + 7 + 3 + 5) + 2.
+TEST_F(MachineClocks, CheckTellsWaysByTheClockOfTheResources) {
+  const auto graph = [&](int noc) {
+    program_.write("two.yaml",
+                   fmt::format("scene: {{builtin: cornell}}\nengine: {{kind: cycle}}\nclocks: {{noc: {}}}\n"
+                               "topology: {{shape: graph, nodes: [{{name: r, count: 2}}, {{name: x, kind: router, "
+                               "latency_cycles: 3}}], links: [{{from: 'r[*]', to: x, latency_cycles: 7}}, {{from: x, "
+                               "to: 'r[*]', latency_cycles: 5}}]}}\n",
+                               noc));
+    return Json::parse(program_.run({"check", "two.yaml", "--json"}).out)["graph"];
+  };
+  const Json one = graph(1000), slow = graph(500);
+  EXPECT_EQ(one["longest_cycles"], 15);
+  EXPECT_EQ(slow["longest_cycles"], 36);
+  EXPECT_EQ(slow["mean_cycles"], 18);  // of both ways, and of each resource to itself
+  EXPECT_DOUBLE_EQ(slow["bound"].get<double>(), one["bound"].get<double>() / 2);
+}
+
 /// When a packet that leaves its resource at `leaves` is at the next one, in cycles of 1 ns: the link takes it over at
 /// its next edge, moves it by its own clock, and the other resource takes it over at its own next edge.
 std::uint64_t crossed(std::uint64_t leaves, std::uint64_t mhz, std::uint64_t wait, std::uint64_t on_link) {
@@ -256,6 +299,17 @@ TEST_F(MachineClocks, AMemoryMovesItsWidthInACycleOfItsOwn) {
     EXPECT_LE(run["memory"]["dram_utilisation"], 1.0);
     EXPECT_EQ(run["digest"], core["digest"]);
   }
+}
+
+TEST_F(MachineClocks, TheWidthOfDramIsRounded) {
+  const auto width = [&](int bytes, int mhz) {
+    return ledger_row(
+        report(starved(bytes, ", clock: dram", fmt::format("clocks: {{dram: {}}}\n", mhz)), {"image.width=4"}),
+        "lines")["width_bytes_per_cycle"];
+  };
+  EXPECT_EQ(width(8, 700), 6);  // 5.6
+  EXPECT_EQ(width(9, 2600), 23);
+  EXPECT_EQ(width(3, 100), 1);
 }
 
 /// Shapes and rays on links of a machine with caches, memory and shading that are drawn.
