@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "report/text/singular.h"
+
 namespace carousel::app {
 
 namespace {
@@ -60,7 +62,8 @@ std::string certificate_table(const Certificate& certificate) {
                               name, result.property->says, reproducer(certificate, result, level));
     }
   }
-  return text + fmt::format("\n{} violations of promised properties\n", certificate.violations()) + broken;
+  return text + report::singular(fmt::format("\n{} violations of promised properties\n", certificate.violations())) +
+         broken;
 }
 
 nlohmann::json certificate_json(const Certificate& certificate) {

@@ -25,6 +25,7 @@
 #include "report/html/studies/sweep_page.h"
 #include "report/read/document.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::app {
 
@@ -153,13 +154,14 @@ double mean_seconds(const SweepRows& rows) {
 
 std::string counts_text(const SweepRows& rows) {
   const std::size_t missing = rows.rows.size() - rows.done() - rows.failed();
-  return fmt::format("{} points: {} done, {} failed, {} to run", rows.rows.size(), rows.done(), rows.failed(), missing);
+  return fmt::format("{}: {} done, {} failed, {} to run", report::singular(fmt::format("{} points", rows.rows.size())),
+                     rows.done(), rows.failed(), missing);
 }
 
 /// Prints the number of points and the time they take, by the finished ones or by a first one, which is run and kept.
 int dry_run(const SweepSetup& setup, const SweepOptions& options, SweepRows& rows, const InterruptScope& interrupt) {
   read_finished(setup, rows, options.retry_failed);
-  std::string source = fmt::format("{} finished points", rows.done());
+  std::string source = rows.done() == 1 ? "1 finished point" : fmt::format("{} finished points", rows.done());
   if (rows.done() == 0) {
     const auto next =
         std::find_if(rows.rows.begin(), rows.rows.end(), [](const SweepRow& row) { return !row.finished; });
@@ -188,7 +190,8 @@ void log_failures(const SweepRows& rows) {
   for (const SweepRow& row : rows.rows)
     if (row.error && ++shown <= kShown)
       spdlog::error("the point {} failed: {}: {}", row.point.text(), row.error->kind, row.error->text);
-  if (shown > kShown) spdlog::error("{} more points failed; sweep.csv names them", shown - kShown);
+  if (shown > kShown)
+    spdlog::error("{}", report::singular(fmt::format("{} more points failed; sweep.csv has all", shown - kShown)));
   if (shown > 0) spdlog::error("failed points run again with --retry-failed");
 }
 
@@ -200,7 +203,9 @@ int finish(const SweepRows& rows, const InterruptScope& interrupt) {
                  rows.rows.size() - missing, rows.rows.size(), missing);
     return interrupt.status();
   }
-  if (missing > 0) spdlog::error("{} points are missing; the same command without --merge runs them", missing);
+  if (missing > 0)
+    spdlog::error("{} missing; the same command without --merge runs what is missing",
+                  missing == 1 ? "1 point is" : fmt::format("{} points are", missing));
   return missing > 0 || rows.failed() > 0 ? kBroken : kDone;
 }
 

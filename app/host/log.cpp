@@ -18,6 +18,7 @@
 #include "core/system/file_calls.h"
 #include "core/system/plain_text.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::app {
 
@@ -133,7 +134,7 @@ Phase::~Phase() {
                failed            ? ", failed"
                : result_.empty() ? ""
                                  : ", ",
-               failed ? "" : result_);
+               failed ? "" : report::singular(result_));
 }
 
 }  // namespace carousel::app

@@ -18,6 +18,7 @@
 #include "core/system/error.h"
 #include "core/system/file_calls.h"
 #include "core/system/unfinished.h"
+#include "report/text/singular.h"
 
 namespace carousel::app {
 
@@ -93,9 +94,9 @@ std::string other_results(const fs::path& folder, const Config* config) {
   const std::vector<std::string> here = config_differences(*there, *config);
   if (here.empty()) return "";
   const std::vector<std::string> were = config_differences(*config, *there);
-  return fmt::format("the results of another configuration, with {}{}, not {}",
-                     were.empty() ? "other keys" : were.front(),
-                     were.size() > 1 ? fmt::format(" and {} more differences", were.size() - 1) : "", here.front());
+  return fmt::format(
+      "the results of another configuration, with {}{}, not {}", were.empty() ? "other keys" : were.front(),
+      were.size() > 1 ? report::singular(fmt::format(" and {} more differences", were.size() - 1)) : "", here.front());
 }
 
 /// True for the working folder: a user's shell would stay in the one that is taken away.

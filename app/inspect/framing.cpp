@@ -13,6 +13,7 @@
 #include "core/system/error.h"
 #include "core/text/edit_distance.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 #include "scene/model/fitted_camera.h"
 #include "scene/model/node_bounds.h"
 
@@ -74,10 +75,10 @@ Framing frame_node(const scene::Scene& scene, std::string_view name, float aspec
 
 std::string framing_yaml(const Framing& framing) {
   return fmt::format(
-      "# sees all of '{}' ({} instances, {} to {})\n"
+      "# sees all of '{}' ({}, {} to {})\n"
       "camera:\n  eye: {}\n  target: {}\n  up: {}\n  field_of_view: {}\n",
-      framing.node, framing.instances, list_text(framing.bounds.lo), list_text(framing.bounds.hi),
-      list_text(framing.eye), list_text(framing.target), list_text(framing.up),
+      framing.node, report::singular(fmt::format("{} instances", framing.instances)), list_text(framing.bounds.lo),
+      list_text(framing.bounds.hi), list_text(framing.eye), list_text(framing.target), list_text(framing.up),
       report::float_text(framing.field_of_view));
 }
 

@@ -116,7 +116,8 @@ std::string nodes_text(const scene::Scene& s) {
   std::string out = fmt::format("\n{:<28}{:>10}   {}\n", "node", "instances", "bounds");
   for (std::size_t i = 0; i < std::min(boxes.size(), kShown); ++i)
     out += fmt::format("{:<28}{:>10}   {}\n", s.nodes[i].name, s.nodes[i].instances, bounds_text(boxes[i]));
-  if (boxes.size() > kShown) out += fmt::format("and {} more nodes, which --json lists\n", boxes.size() - kShown);
+  if (boxes.size() > kShown)
+    out += report::singular(fmt::format("and {} more nodes, which --json lists\n", boxes.size() - kShown));
   return out;
 }
 
@@ -172,12 +173,12 @@ Json listing_json(const scene::Scene& s, const report::Shading& shading) {
 
 std::string listing_text(const scene::Scene& s, const report::Shading& shading) {
   const Holdings h = holdings(s);
-  std::string out = fmt::format(
-      "scene        {}: {} triangles, {} with instances, {} spheres; {} meshes, {} instances\n"
-      "             {} materials, {} textures, {} images of {}, {} lights, {} cameras\n",
-      s.name, report::grouped(h.triangles), report::grouped(h.instanced), h.spheres, s.meshes.size(),
-      s.instances.size(), h.materials, s.textures.size(), s.images.size(), report::bytes_text(h.image_bytes), h.lights,
-      h.cameras);
+  std::string out = report::singular(
+      fmt::format("scene        {}: {} triangles, {} with instances, {} spheres; {} meshes, {} instances\n"
+                  "             {} materials, {} textures, {} images of {}, {} lights, {} cameras\n",
+                  s.name, report::grouped(h.triangles), report::grouped(h.instanced), h.spheres, s.meshes.size(),
+                  s.instances.size(), h.materials, s.textures.size(), s.images.size(),
+                  report::bytes_text(h.image_bytes), h.lights, h.cameras));
   if (s.added.camera || s.added.sun)
     out += fmt::format("made up      {}{}{}\n",
                        !s.added.camera  ? ""

@@ -16,6 +16,7 @@ bool letter(char c) {
 std::string singular_noun(std::string_view plural) {
   const auto stem = [&](std::size_t less) { return std::string(plural.substr(0, plural.size() - less)); };
   if (plural == "leaves") return "leaf";
+  if (plural == "caches") return "cache";
   if (plural.ends_with("ies")) return stem(3) + "y";
   for (const std::string_view ending : {"sses", "shes", "ches", "xes"})
     if (plural.ends_with(ending)) return stem(2);

@@ -11,6 +11,7 @@
 #include "core/config/write.h"
 #include "core/numeric/bytes_digest.h"
 #include "core/system/error.h"
+#include "report/text/singular.h"
 
 namespace carousel::app {
 
@@ -32,7 +33,7 @@ std::string SweepPoint::text() const {
   std::string out;
   for (std::size_t i = 0; i < std::min(keys.size(), kShownKeys); ++i)
     out += (out.empty() ? "" : ", ") + keys[i].first + "=" + keys[i].second;
-  if (keys.size() > kShownKeys) out += fmt::format(" and {} more keys", keys.size() - kShownKeys);
+  if (keys.size() > kShownKeys) out += report::singular(fmt::format(" and {} more keys", keys.size() - kShownKeys));
   return out.empty() ? "the configuration itself" : out;
 }
 
@@ -110,12 +111,13 @@ std::vector<SweepPoint> make_points(PointMaker& maker, const std::vector<Choice>
   if (issues.empty()) return out;
   for (ConfigIssue& issue : issues) {
     const std::string bare = issue.key_path + issue.message.substr(0, issue.message.find(" (at the point "));
-    if (times[bare] > 1) issue.message += fmt::format(" and at {} more points", times[bare] - 1);
+    if (times[bare] > 1) issue.message += report::singular(fmt::format(" and at {} more points", times[bare] - 1));
   }
   if (issues.size() > kShownErrors) {
     const std::size_t more = issues.size() - kShownErrors;
     issues.resize(kShownErrors);
-    issues.push_back({{}, "", fmt::format("{} more errors of points; --exclude leaves points out", more)});
+    issues.push_back(
+        {{}, "", report::singular(fmt::format("{} more errors of points; --exclude leaves points out", more))});
   } else {
     issues.push_back(
         {{}, "", "nothing was run, since some points are invalid; --exclude KEY=VALUE,... leaves points out"});

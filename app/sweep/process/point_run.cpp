@@ -15,6 +15,7 @@
 #include "app/host/interrupt.h"
 #include "core/system/error.h"
 #include "report/run/report_json.h"
+#include "report/text/singular.h"
 
 namespace carousel::app {
 
@@ -26,7 +27,8 @@ PointError current_error() {
     std::string text;
     for (std::size_t i = 0; i < std::min(error.issues().size(), kShown); ++i)
       text += (text.empty() ? "" : "\n") + error.issues()[i].text();
-    if (error.issues().size() > kShown) text += fmt::format("\n{} more errors", error.issues().size() - kShown);
+    if (error.issues().size() > kShown)
+      text += report::singular(fmt::format("\n{} more errors", error.issues().size() - kShown));
     return {"config", text};
   } catch (const SceneError& error) {
     return {"scene", error.what()};

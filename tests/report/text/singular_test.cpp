@@ -9,6 +9,7 @@ TEST(Singular, IsTheNounBehindAOne) {
   EXPECT_EQ(singular("1 structures, 1 strips deep   1 inner nodes of 8.0 children   1 leaves"),
             "1 structure, 1 strip deep   1 inner node of 8.0 children   1 leaf");
   EXPECT_EQ(singular("scene        (1 misses\n1 meshes"), "scene        (1 miss\n1 mesh");
+  EXPECT_EQ(singular("1 caches, 1 memories, 1 branches"), "1 cache, 1 memory, 1 branch");
 }
 
 TEST(Singular, LeavesOtherNumbersUnitsAndWordsAlone) {
