@@ -28,14 +28,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::string_view kBuiltin = "builtin:";
+constexpr std::string_view kBuiltinScene = "builtin:";
 
 /// The configuration that names the scene; all other keys have their defaults or the values of --set.
 LocatedConfig config_for(const InspectArguments& arguments) {
   const std::string& name = arguments.scene;
   Json scene;
-  if (name.starts_with(kBuiltin))
-    scene["builtin"] = name.substr(kBuiltin.size());
+  if (name.starts_with(kBuiltinScene))
+    scene["builtin"] = name.substr(kBuiltinScene.size());
   else
     scene["file"] = name;
   const Json config{{"schema_version", 1}, {"scene", scene}};
@@ -44,7 +44,7 @@ LocatedConfig config_for(const InspectArguments& arguments) {
 
 /// Names what is wrong with the name of a scene, before a configuration is made of it.
 void check_name(const std::string& name) {
-  if (name.starts_with(kBuiltin)) return;
+  if (name.starts_with(kBuiltinScene)) return;
   std::error_code ignored;
   const auto fail = [&](const std::string& why) { throw FileError(fmt::format("{}: {}", name, why)); };
   const std::string ending = std::filesystem::path(name).extension().string();
@@ -53,12 +53,12 @@ void check_name(const std::string& name) {
     fail(
         fmt::format("is a configuration, by its name; expected a scene file, or {}NAME. carousel check {} shows the "
                     "machine of a configuration, with nodes, links and cuts",
-                    kBuiltin, name));
+                    kBuiltinScene, name));
   if (there) return;
   if (std::filesystem::is_directory(name, ignored)) fail("is a folder; expected a scene file");
   if (enum_value<BuiltinScene>(name))
-    fail(fmt::format("no such file; the built-in scene is carousel inspect {}{}", kBuiltin, name));
-  fail(fmt::format("no such file; expected a scene file, or {}NAME with one of {}", kBuiltin,
+    fail(fmt::format("no such file; the built-in scene is carousel inspect {}{}", kBuiltinScene, name));
+  fail(fmt::format("no such file; expected a scene file, or {}NAME with one of {}", kBuiltinScene,
                    fmt::join(config::enum_values("scene.builtin"), ", ")));
 }
 

@@ -19,7 +19,7 @@ using report::EnergyPart;
 namespace {
 
 constexpr double kWord = 8;  // bytes of an access
-constexpr double kRecordBytes = 64, kPlaceBytes = 64, kIdBytes = 4;
+constexpr double kRayRecordBytes = 64, kPlaceBytes = 64, kRayIdBytes = 4;
 /// The reciprocals of a ray's direction stand in its record, as AMD's instructions take them with the ray (RDNA 2
 /// instruction set, 2020, IMAGE_BVH_INTERSECT_RAY): in place of tmax, which is the hit's distance while the ray is in
 /// flight, and of what the tag says beside its flags, which shading knows by the ray's ID. So a visit divides nothing.
@@ -53,9 +53,10 @@ EnergyAccount::EnergyAccount(const Config& config, double link_mm, std::vector<B
       rows_(std::move(rows)),
       wire_mm_(lengths(config, drawn_, link_mm)),
       rays_kib_(mean(config, [](const OwnSections& one) { return one.rays.slots_per_resource; }) *
-                (kRecordBytes + static_cast<double>(config.rays.query.buffered()) * kBufferedHitBytes) / 1024 /
+                (kRayRecordBytes + static_cast<double>(config.rays.query.buffered()) * kBufferedHitBytes) / 1024 /
                 static_cast<double>(own_testers(config))),
-      collections_kib_(kIdBytes * mean(config, [](const OwnSections& one) { return one.collections.capacity; }) / 1024),
+      collections_kib_(kRayIdBytes * mean(config, [](const OwnSections& one) { return one.collections.capacity; }) /
+                       1024),
       buffer_kib_(mean(config, [](const OwnSections& one) { return one.memory.shape_buffer_kib; })),
       l1_kib_(mean(config, [](const OwnSections& one) { return one.memory.l1_kib; })),
       l2_kib_(static_cast<double>(config.memory.l2_kib) / static_cast<double>(config.memory.l2_banks)),
@@ -126,9 +127,9 @@ class EnergyAccount::Sum {
     divisions(static_cast<double>(of.tests.transforms));
     beside_tests(of.tests);
     if (of.tests.programs > 0) instructions(of.tests);
-    access(EnergyPart::kRayStore, kRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
+    access(EnergyPart::kRayStore, kRayRecordBytes * static_cast<double>(of.record_reads), a_.rays_kib_);
     access(EnergyPart::kRayStore, static_cast<double>(of.buffer_bytes), a_.rays_kib_);
-    access(EnergyPart::kCollections, 2 * kIdBytes * static_cast<double>(of.packet_rays), a_.collections_kib_);
+    access(EnergyPart::kCollections, 2 * kRayIdBytes * static_cast<double>(of.packet_rays), a_.collections_kib_);
     access(EnergyPart::kShapeBuffers, kPlaceBytes * static_cast<double>(of.shape_reads), a_.buffer_kib_);
     if (of.prefetch_votes > 0)
       parts_[EnergyPart::kShapeBuffers].add_work(static_cast<double>(of.prefetch_votes), pj(Cost::kPrefetchVote));

@@ -11,7 +11,7 @@ namespace carousel::app {
 
 namespace {
 
-bool nearer(const Hit& a, const Hit& b) {
+bool before(const Hit& a, const Hit& b) {
   return std::tuple(a.t, a.instance, a.primitive, a.u, a.v) < std::tuple(b.t, b.instance, b.primitive, b.u, b.v);
 }
 
@@ -21,8 +21,8 @@ void AllHits::add(std::uint32_t path, const Hit& hit) {
   Shard& shard = shards_[path % shards_.size()];
   const std::lock_guard lock(shard.mutex);
   std::vector<Hit>& hits = shard.hits[path];
-  const auto at = std::lower_bound(hits.begin(), hits.end(), hit, nearer);
-  if (at != hits.end() && !nearer(hit, *at)) return;
+  const auto at = std::lower_bound(hits.begin(), hits.end(), hit, before);
+  if (at != hits.end() && !before(hit, *at)) return;
   if (hits.size() == most_)
     throw ConfigError("rays.hits_per_ray",
                       fmt::format("a ray of the file has more than {} hits; expected a larger number", most_));

@@ -13,7 +13,7 @@ namespace carousel::app {
 
 namespace {
 
-constexpr std::size_t kMostRows = 30;
+constexpr std::size_t kRowsOfTable = 30;
 
 /// The shortest ending of a key, from a dot on, that no other varied key has.
 std::string short_name(const std::string& key, const std::vector<std::string>& keys) {
@@ -121,9 +121,9 @@ std::string sweep_table(const SweepRows& rows, const std::vector<Goal>& goals, s
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank(a) < rank(b); });
   std::string out;
-  if (order.size() > kMostRows) {
-    out += fmt::format("The best {} of {} points by {}:\n", kMostRows, order.size(), rows.columns[goal.column].name);
-    order.resize(kMostRows);
+  if (order.size() > kRowsOfTable) {
+    out += fmt::format("The best {} of {} points by {}:\n", kRowsOfTable, order.size(), rows.columns[goal.column].name);
+    order.resize(kRowsOfTable);
   }
   const std::vector<bool> ties = ties_with_best(rows, goal);
   out += rows_text(rows, order, goals, ties, width);

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::string_view kHeader = "cycle,kind,address,bytes";
 constexpr std::size_t kColumns = 4, kMostIssues = 20, kLongestLine = 256;
-constexpr std::uint64_t kLastCycle = 1'000'000'000'000, kLastAddress = ringbus::kMemoryEnd - 1, kMostBytes = 65536;
+constexpr std::uint64_t kLastCycle = 1'000'000'000'000, kLastAddress = ringbus::kMemoryEnd - 1, kMostOfRequest = 65536;
 
 class MemoryReader {
  public:
@@ -81,7 +81,7 @@ class MemoryReader {
     if (!request.write && cells[1] != "read")
       issue(columns[1], fmt::format("expected read or write, found '{}'", cells[1]));
     request.address = number(2, 0, kLastAddress);
-    request.bytes = static_cast<std::uint32_t>(number(3, 1, kMostBytes));
+    request.bytes = static_cast<std::uint32_t>(number(3, 1, kMostOfRequest));
     if (requests_.size() == most_) issue(0, fmt::format("expected at most {} requests, found more", most_));
     if (!requests_.empty() && request.cycle < requests_.back().cycle)
       issue(columns[0], fmt::format("requests stand in the order of their cycles; expected at least {}, found {}",

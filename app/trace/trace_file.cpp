@@ -22,7 +22,7 @@ using ringbus::Slice;
 
 constexpr std::string_view kWindowFormat = "expected A:B with A below B, in cycles of the run (native: in seconds)";
 
-double number(std::string_view text) {
+double window_end(std::string_view text) {
   double value = -1;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   return error == std::errc() && end == text.data() + text.size() ? value : -1;
@@ -36,8 +36,8 @@ ringbus::TimelineOptions options_of(const TraceArguments& arguments, bool native
   const std::size_t colon = arguments.window.find(':');
   const std::string_view window = arguments.window;
   const double scale = native ? 1e9 : 1;
-  const double first = colon == std::string::npos ? -1 : number(window.substr(0, colon)) * scale,
-               end = colon == std::string::npos ? -1 : number(window.substr(colon + 1)) * scale;
+  const double first = colon == std::string::npos ? -1 : window_end(window.substr(0, colon)) * scale,
+               end = colon == std::string::npos ? -1 : window_end(window.substr(colon + 1)) * scale;
   const bool whole = native || (first == std::floor(first) && end == std::floor(end));
   if (first < 0 || end <= first || end > 0x1p53 || !whole)
     throw ConfigError("--trace-window", fmt::format("found {}; {}", arguments.window, kWindowFormat));

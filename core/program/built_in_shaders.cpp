@@ -19,7 +19,7 @@ struct Counts {
   int simple, product, divide;
   int all() const { return simple + product + divide; }
 };
-constexpr Counts kMiss{18, 6, 0}, kShadow{16, 4, 0}, kCamera{48, 73, 11}, kUnlit{3, 6, 0}, kAnyHit{13, 11, 0};
+constexpr Counts kMiss{18, 6, 0}, kShadow{16, 4, 0}, kCamera{48, 73, 11}, kUnlit{3, 6, 0}, kAnyHitCounts{13, 11, 0};
 /// A plain surface: its geometry, normal and lobes; what a light takes; what a bounce ray takes.
 constexpr Counts kSurface{373, 300, 25}, kLight{91, 86, 15}, kBounce{137, 145, 22};
 
@@ -126,7 +126,7 @@ std::vector<std::string> built_in_shader(std::size_t kind) {
     out.line("mov v0, corners");
     out.line("mov v3, material");
     out.textures();
-    out.operations(kAnyHit);
+    out.operations(kAnyHitCounts);
   } else if (kind == kCameraKind) {
     out.fill();
     out.operations(kCamera);

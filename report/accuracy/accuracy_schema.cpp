@@ -40,7 +40,7 @@ Json range(const char* meaning) {
       meaning);
 }
 
-Json ratio() {
+Json ratio_schema() {
   // An end of the interval may be beyond a double.
   const auto end = [](const char* meaning) {
     Json out = typed("number", meaning);
@@ -88,7 +88,7 @@ Json level() {
        {"leaks", count("misses from inside closed surfaces", "rays")},
        {"picture", picture_errors()},
        {"frontier", by_clock(typed("boolean", ""), "true if no other level is both cheaper and less often wrong")},
-       {"over_cheapest", by_clock(ratio(), "the cost over that of the cheapest levels")},
+       {"over_cheapest", by_clock(ratio_schema(), "the cost over that of the cheapest levels")},
        {"safe", typed("boolean", "nothing was missed or added")},
        {"safe_but_slivers", typed("boolean", "the same but for the hard cases of slivers")}},
       "a combination of levels of the tests");

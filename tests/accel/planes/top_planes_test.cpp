@@ -21,7 +21,7 @@
 namespace carousel::accel {
 namespace {
 
-using Levels = CullPlanesConfig::Levels;
+using PlaneLevels = CullPlanesConfig::Levels;
 using Nodes = CullPlanesConfig::Nodes;
 using Fit = CullPlanesConfig::Fit;
 
@@ -144,7 +144,7 @@ TEST(TopPlanes, LoseNoHitOfInstancesAnywhere) {
                                     .nodes = Nodes::kAll,
                                     .shared_normals = turn % 3 == 2,
                                     .fit = turn % 2 == 0 ? Fit::kBoxes : Fit::kVertices,
-                                    .levels = turn % 4 == 0 ? Levels::kAll : Levels::kTlas};
+                                    .levels = turn % 4 == 0 ? PlaneLevels::kAll : PlaneLevels::kTlas};
       Losses losses;
       const auto trace = [&](const scene::Scene& scene) {
         const Accel plain = built(scene, {}, level), planes = built(scene, config, level);
@@ -175,7 +175,7 @@ TEST(TopPlanes, LoseNoHitOfExactTriangles) {
   Losses losses;
   for (const Placed& placed : placed_scenes(run_seed() + 703)) {
     const auto level = TransformLevel::kTwoStep;
-    const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
+    const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = PlaneLevels::kTlas};
     count_losses(built(placed.scene, {}, level, 1, TriangleLevel::kExact),
                  built(placed.scene, config, level, 1, TriangleLevel::kExact),
                  plane_grazing_rays(placed.scene, oracle_rays() / 200, std::uint64_t{run_seed()} << 32 | 78), losses);
@@ -207,7 +207,7 @@ TEST(TopPlanes, NeedTheirMargin) {
     Accel plain, planes;
   };
   std::vector<Structures> structures;
-  const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = Levels::kTlas};
+  const CullPlanesConfig config{.count = 8, .nodes = Nodes::kAll, .levels = PlaneLevels::kTlas};
   for (const Placed& placed : scenes) structures.push_back({built(placed.scene, {}), built(placed.scene, config)});
   for (const float factor : {0.0f, 0x1p-7f, 0x1p-6f, 0x1p-5f, 0x1p-4f, 0x1p-3f, 0x1p-2f, 0x1p-1f, 1.0f}) {
     table += fmt::format("| {} |", factor);
@@ -241,9 +241,9 @@ TEST(TopPlanes, CutOffNoVertexWhereItStandsExactly) {
   for (const Placed& placed : placed_scenes(run_seed() + 702))
     for (const Fit fit : {Fit::kVertices, Fit::kBoxes})
       for (const bool shared : {false, true}) {
-        const Accel accel =
-            built(placed.scene,
-                  {.count = 8, .nodes = Nodes::kAll, .shared_normals = shared, .fit = fit, .levels = Levels::kTlas});
+        const Accel accel = built(
+            placed.scene,
+            {.count = 8, .nodes = Nodes::kAll, .shared_normals = shared, .fit = fit, .levels = PlaneLevels::kTlas});
         for (const Node& node : accel.nodes) {
           EXPECT_TRUE(node.above_instances || node.plane_counts == 0);
           const CullPlane* plane = accel.planes.data() + node.first_plane;
@@ -272,7 +272,7 @@ TEST(TopPlanes, CutOffNoVertexWhereItStandsExactly) {
 
 TEST(TopPlanes, StandOnlyWhereTheyAreWanted) {
   const scene::Scene scene = small_builtin(BuiltinScene::kInstances, 0, 200);
-  for (const Levels levels : {Levels::kBlas, Levels::kTlas, Levels::kAll})
+  for (const PlaneLevels levels : {PlaneLevels::kBlas, PlaneLevels::kTlas, PlaneLevels::kAll})
     for (const Nodes nodes : {Nodes::kLeaves, Nodes::kInner, Nodes::kAll}) {
       const Accel accel = built(scene, {.count = 3, .nodes = nodes, .levels = levels}, TransformLevel::kTwoStep, 4);
       std::size_t seen[2][2] = {}, count = 0;  // above or below, inner or not
@@ -284,7 +284,7 @@ TEST(TopPlanes, StandOnlyWhereTheyAreWanted) {
       EXPECT_EQ(count, accel.planes.size());
       for (const bool above : {false, true})
         for (const bool inner : {false, true}) {
-          const bool wanted = (above ? levels != Levels::kBlas : levels != Levels::kTlas) &&
+          const bool wanted = (above ? levels != PlaneLevels::kBlas : levels != PlaneLevels::kTlas) &&
                               (nodes == Nodes::kAll || inner == (nodes == Nodes::kInner));
           EXPECT_EQ(seen[above][inner] > 0, wanted) << enum_name(levels) << " " << enum_name(nodes) << above << inner;
         }
@@ -299,7 +299,8 @@ TEST(TopPlanes, GiveTheAnswersOfBruteForceAndSpareTransforms) {
     const RayBatch rays = mixed_rays(scene, 500, run_seed());
     const BruteForceAnswers answers(scene, rays, accuracy);
     for (const std::int64_t count : {1, 3, 8}) {
-      const Accel planes = built(scene, {.count = count, .nodes = Nodes::kLeaves, .levels = Levels::kTlas}, level, 2);
+      const Accel planes =
+          built(scene, {.count = count, .nodes = Nodes::kLeaves, .levels = PlaneLevels::kTlas}, level, 2);
       EXPECT_EQ(answers.differences(planes), 0u) << enum_name(level) << " " << count;
       HitBatch hits;
       IntersectionCounts with, without;

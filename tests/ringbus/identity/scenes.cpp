@@ -6,7 +6,7 @@ namespace carousel::ringbus {
 
 namespace {
 
-constexpr std::uint32_t kPaths = 150;
+constexpr std::uint32_t kScenePaths = 150;
 constexpr std::uint8_t kBounces = 3;
 
 /// Every other instance becomes a rotation and a translation, which one level of the transform tells apart.
@@ -26,7 +26,7 @@ TestScene& Scenes::of(const Cell& cell) {
     scene::Scene scene = cell.non_opaque ? accel::passing_scene(builtin, 20, run_seed(), cell.config.scene.levels)
                                          : builtin_scene(builtin, 600, 300, cell.config.scene.levels);
     if (builtin == BuiltinScene::kInstances) remove_some_scales(scene);
-    made = std::make_unique<TestScene>(std::move(scene), kPaths, kBounces, cell.away,
+    made = std::make_unique<TestScene>(std::move(scene), kScenePaths, kBounces, cell.away,
                                        cell.non_opaque ? &accept_some_ : nullptr);
   }
   return *made;
