@@ -16,8 +16,8 @@ struct LinkRecorder {
   const TripTable* trips = nullptr;
   std::uint32_t track = 0;
   ClockRatio clock{};  ///< from the cycles of the resources, in which times are noted, to those of the sender
-  ClockRatio link{};   ///< to those of the link
   std::vector<PacketHistory>* histories = nullptr;  ///< of all packets
+  ClockRatio link{};                                ///< from the cycles of the resources to those of the link
 
   bool wanted() const { return slices != nullptr || histories != nullptr; }
   /// `begin` and `end` by the clock of the sender, `arrival` by that of the link: an edge of the sender's may be later
