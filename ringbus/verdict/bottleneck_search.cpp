@@ -16,7 +16,6 @@
 #include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
 #include "ringbus/verdict/search_choices.h"
-#include "ringbus/verdict/small_frame.h"
 #include "ringbus/verdict/steady_state.h"
 #include "ringbus/verdict/what_if.h"
 
@@ -48,7 +47,7 @@ class Search {
     const std::size_t first = groups.size() + 1;
     out_.paths = first_paths(config_, run_.paths, budget_, first);
     if (budget_.of(out_.paths, first) > kAtMost) {
-      out_.least_paths = least_paths_for(first);
+      out_.least_paths = least_frame(config_, run_, first);
       out_.gains.clear();
       return out_;
     }
@@ -68,7 +67,7 @@ class Search {
     return out_;
   }
 
-  std::uint64_t least_paths() { return least_paths_for(first_groups().size() + 1); }
+  std::uint64_t least_paths() { return least_frame(config_, run_, first_groups().size() + 1); }
 
  private:
   /// The classes that are worth a simulation by the run's ledger.
@@ -77,14 +76,6 @@ class Search {
     for (std::size_t i = 0; i < what_ifs_.size(); ++i) note(i, {0, 0, most(i)}, 0);
     leave_out(groups, out_.gains, kWorthIt);
     return groups;
-  }
-
-  /// The paths of a frame in which the least pilots of so many machines keep within the budget.
-  std::uint64_t least_paths_for(std::size_t machines) const {
-    constexpr std::uint64_t kLarge = 1000;  // so that this frame is no bound of its pilots
-    const std::uint64_t pilot =
-        pilot_paths(config_, kLarge * run_.paths, kLarge * run_.result.rays_completed, 0, PilotSize::kLeast);
-    return two_digits_up(static_cast<double>(machines * pilot) / kAtMost);
   }
 
   std::uint64_t frame() const { return run_.result.rays_completed; }

@@ -13,6 +13,7 @@
 #include "core/config/config.h"
 #include "core/types/workload.h"
 #include "ringbus/results/run_result.h"
+#include "ringbus/verdict/small_frame.h"
 
 namespace carousel::ringbus {
 
@@ -88,6 +89,15 @@ inline std::uint64_t paths_against_noise(const SearchBudget& budget, std::uint64
   if (budget.left(kWithFrame, simulated) < 1) return doubled(budget, pilot, budget.left(kAtMost, simulated), classes);
   classes.resize(1);
   return budget.paths;
+}
+
+/// The paths of a frame like that of the run in which the least pilots of so many machines keep within the budget: two
+/// digits, rounded up.
+inline std::uint64_t least_frame(const Config& config, const SearchedRun& run, std::size_t machines) {
+  constexpr std::uint64_t kLarge = 1000;  // so that the frame of the run is no bound of its pilots
+  const std::uint64_t pilot =
+      pilot_paths(config, kLarge * run.paths, kLarge * run.result.rays_completed, 0, PilotSize::kLeast);
+  return two_digits_up(static_cast<double>(machines * pilot) / kAtMost);
 }
 
 /// Paths of a search's first pilot, which so many machines simulate: the least that will do where more would take too
