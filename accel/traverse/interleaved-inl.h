@@ -1,6 +1,6 @@
 // Depth-first traversal of several rays in turn. One ray alone is a chain of waits: for a node's boxes, for the
 // comparisons on them, for the node they lead to. Here the boxes of all rays are tested before any ray moves on, and
-// nodes are on their way while it is the others' turn.
+// nodes and leaves are on their way while it is the others' turn.
 #if defined(CAROUSEL_ACCEL_INTERLEAVED_INL_H_) == defined(HWY_TARGET_TOGGLE)
 #ifdef CAROUSEL_ACCEL_INTERLEAVED_INL_H_
 #undef CAROUSEL_ACCEL_INTERLEAVED_INL_H_
@@ -9,6 +9,7 @@
 #endif
 
 #include <cstddef>
+#include <memory>
 #include <utility>
 
 #include <hwy/highway.h>
@@ -19,8 +20,8 @@
 HWY_BEFORE_NAMESPACE();
 namespace carousel::accel::HWY_NAMESPACE {
 
-/// Rays under way at a time: two gain half as much, six nothing more.
-inline constexpr std::size_t kWalkersInTurn = 4;
+/// Rays under way at a time: with sixteen a round may end before a line has come from memory.
+inline constexpr std::size_t kWalkersInTurn = 24;
 
 /// A ray on its way.
 template <class Slab>
@@ -29,15 +30,15 @@ struct Walker {
   LocalRay<Slab>* frame;
   std::uint32_t ray;  ///< its number, for who sent it out
   bool any_hit;
-  NodeRef ref;         ///< the inner node to be visited next
+  NodeRef ref;         ///< the inner node or the leaf to be visited next
   std::uint32_t mask;  ///< which of its children are hit
   DepthFirstStack::Entry* top;
   alignas(64) float entry[kMaxWidth];
   DepthFirstStack stack;
 };
 
-/// Takes a walker on from `ref`, or when it hit no child from its stack, to its next inner node; false when its ray is
-/// done.
+/// Takes a walker on from `ref`, or when it hit no child from its stack, to its next inner node, or to `ref` if
+/// that is a leaf; false when its ray is done. Leaves from the stack are tested on the way: most have been fetched.
 template <Nodes kNodes, class Slab>
 HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, NodeRef ref, TraceStacks& stacks,
                         TraversalCounts& counts) {
@@ -60,9 +61,21 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
       prefetch_lines(accel.nodes.data() + ref.node());
       return true;
     }
+    if (any) {
+      walker.ref = ref;
+      prefetch_block(accel, ref);
+      return true;
+    }
     count_leaf(ref, counts);
     if (test_leaf(accel, ref, ~0u, frame, hit) && walker.any_hit) return false;
   }
+}
+
+/// The walkers of a thread, whose stacks are large.
+template <class Slab>
+Walker<Slab>* walkers_of_thread() {
+  static thread_local const std::unique_ptr<Walker<Slab>[]> walkers(new Walker<Slab>[kWalkersInTurn]);
+  return walkers.get();
 }
 
 /// Takes rays through the tree in turn. `start(walker)` gives a walker its next ray, its frame and any_hit, and returns
@@ -70,11 +83,10 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
 template <Nodes kNodes, class Slab, class Start, class Finish>
 HWY_INLINE void take_turns(const Accel& accel, TraceStacks& stacks, TraversalCounts& counts, const Start& start,
                            const Finish& finish) {
-  constexpr std::size_t kWalkers = kWalkersInTurn;
   const Node* const nodes = accel.nodes.data();
   std::size_t count = 0;
-  Walker<Slab> walkers[kWalkers];
-  Walker<Slab>* active[kWalkers];
+  Walker<Slab>* const walkers = walkers_of_thread<Slab>();
+  Walker<Slab>* active[kWalkersInTurn];
   const bool quantised = kNodes == Nodes::kOther && !accel.full_nodes.empty();
   const auto set_off = [&](Walker<Slab>& walker, std::size_t place) HWY_ATTR {
     NodeRef from;
@@ -85,11 +97,17 @@ HWY_INLINE void take_turns(const Accel& accel, TraceStacks& stacks, TraversalCou
     }
     return false;
   };
-  for (std::size_t i = 0; i < kWalkers; ++i)
-    if (set_off(walkers[i], i)) active[count++] = &walkers[i];
+  for (; count < kWalkersInTurn && set_off(walkers[count], count); ++count) active[count] = &walkers[count];
   while (count > 0) {
     for (std::size_t k = 0; k < count; ++k) {
       Walker<Slab>& walker = *active[k];
+      if (!walker.ref.is_inner()) {
+        walker.mask = 0;
+        count_leaf(walker.ref, counts);
+        if (test_leaf(accel, walker.ref, ~0u, *walker.frame, walker.record->hit) && walker.any_hit)
+          walker.top = walker.stack.entries;
+        continue;
+      }
       const Node& node = nodes[walker.ref.node()];
       LocalRay<Slab>& frame = *walker.frame;
       walker.mask = met_children<kNodes>(accel, walker.ref, frame, in_registers(frame.slab), walker.record->hit.t,

@@ -35,6 +35,11 @@ HWY_INLINE void prefetch_lines(const void* bytes) {
     __builtin_prefetch(static_cast<const char*>(bytes) + line);
 }
 
+HWY_INLINE void prefetch_block(const Accel& accel, NodeRef leaf) {
+  const char* const bytes = reinterpret_cast<const char*>(accel.blocks.data() + leaf.first_block());
+  for (std::size_t line = 0; line < sizeof(TriangleBlock); line += 64) __builtin_prefetch(bytes + line);
+}
+
 /// Prefetches a stacked node, so that it arrives from memory while nearer nodes are visited.
 HWY_INLINE void prefetch(const Accel& accel, NodeRef ref) {
   if (ref.is_inner())

@@ -29,8 +29,8 @@ namespace carousel::accel::HWY_NAMESPACE {
 inline constexpr std::uint32_t kStreamRays = 2048;     ///< rays under way together; more are taken in turns
 inline constexpr std::uint32_t kStreamRoom = 131'072;  ///< places in lists
 inline constexpr std::uint32_t kFewRays = 8;           ///< a shorter list is not split
-inline constexpr std::uint32_t kFewRaysOfLeaf = 3;     ///< a shorter list is tested ray by ray
-inline constexpr std::uint32_t kLaterRays = 32;        ///< rays of short lists that wait for one another
+inline constexpr std::uint32_t kFewRaysOfLeaf = 3;     ///< a shorter list is not tested in lanes
+inline constexpr std::uint32_t kLaterRays = 128;       ///< rays of short lists that wait for one another
 
 #if HWY_MAX_BYTES >= 64
 
@@ -162,14 +162,7 @@ class Stream {
 
   HWY_NOINLINE void test(NodeRef leaf, const StreamList& list) {
     const bool in_lanes = accel_.accuracy.triangle == TriangleLevel::kWatertight && !leaf.is_procedural();
-    if (!in_lanes || list.count < kFewRaysOfLeaf) {
-      for (std::uint32_t i = list.begin; i < list.begin + list.count; ++i) {
-        const std::uint32_t ray = s_.ids[i];
-        count_leaf(leaf, counts_);
-        if (test_leaf(accel_, leaf, ~0u, s_.frames[ray].ray, s_.records[ray]->hit)) note(ray);
-      }
-      return;
-    }
+    if (!in_lanes || list.count < kFewRaysOfLeaf) return put_off(list);
     counts_.triangle += std::uint64_t{leaf.triangles()} * list.count;
     fill_up(list);
     for (std::uint32_t i = 0; i < list.count; i += kRayLanes) {

@@ -56,6 +56,25 @@ TEST(Ray, MissIsCanonicalWithFiniteTmax) {
   expect_canonical_miss(trace_one(accel, ray_to({0, 0, -3}, {0, 0, 1}, 4.5f)));
 }
 
+// Other rays fill a ray's waits, and change nothing of its way; a shadow ray's way ends at a hit in a leaf.
+TEST(RaysInTurn, MakeTheTestsThatEachMakesAlone) {
+  for (const BuiltinScene builtin : {BuiltinScene::kTerrain, BuiltinScene::kSpheres, BuiltinScene::kInstances}) {
+    const scene::Scene scene = small_builtin(builtin);
+    const RayBatch rays = mixed_rays(scene, 700, 15);
+    for (std::int64_t width = 2; width <= 8; ++width)
+      for (const std::int64_t leaf : {1, 4, 16}) {
+        const Accel accel = build_sequential(scene, width, leaf);
+        HitBatch hits;
+        IntersectionCounts alone, in_turn;
+        trace_depth_first(accel, rays, hits, alone);
+        trace_depth_first_interleaved(accel, rays, hits, in_turn);
+        EXPECT_GT(alone.triangle, 0u);
+        for (const auto& counter : IntersectionCounts::counters())
+          EXPECT_EQ(counter.value(alone), counter.value(in_turn)) << counter.name << ", width " << width;
+      }
+  }
+}
+
 TEST(Ray, HitsAtBothEndsOfItsRange) {
   const scene::Scene scene = scene_of(soup({{-1, -1, 0}, {1, -1, 0}, {0, 1, 0}}));
   const Accel accel = build_sequential(scene);
