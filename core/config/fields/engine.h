@@ -69,7 +69,7 @@ void describe(V& v, EngineConfig& c) {
   v.choice("simd", c.simd, "The instruction set of the test kernels. With auto it is the best that this machine has.");
   v.choice(
       "lanes", c.lanes,
-      "How a treelet's rays go through it. With boxes each goes by itself, four in turn. With rays they go together, "
+      "How a treelet's rays go through it. With boxes each goes by itself, 24 in turn. With rays they go together, "
       "a list of rays at each node, which is split among its children. auto takes the lists where most of the "
       "treelet's nodes may be met by several rays, and with rays.sort: cells. Lists need the instruction set avx3 "
       "(AVX-512); with any other one rays go by themselves. Hits are the same.");
