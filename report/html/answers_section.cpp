@@ -37,7 +37,8 @@ Html card(const char* question, const Html& answer) {
 Html limits_card(const Json& report) {
   Html out;
   if (const Json* gain = limiting_gain(report)) {
-    out += markup("<p class=\"verdict\">{}</p>\n", capital(words(text_at(*gain, "name"))));
+    const std::string group = text_at(report, "bottleneck.group"), name = words(text_at(*gain, "name"));
+    out += markup("<p class=\"verdict\">{}</p>\n", capital(group.empty() ? name : fmt::format("{} ({})", group, name)));
     const Json* rivals = find(report, "bottleneck.rivals");
     constexpr std::size_t kShown = 3;
     std::string names;

@@ -16,7 +16,9 @@ std::string verdict_sentence(const Json& report) {
     for (const Json& gain : (*bottleneck)["gains"]) {
       if (text_at(gain, "name") != limits) continue;
       const double low = number_at(gain, "low"), high = number_at(gain, "high");
-      std::string out = fmt::format("this machine is limited by {}: {} gains {:+.1f} %", words(limits),
+      const std::string group = text_at(*bottleneck, "group");
+      std::string out = fmt::format("this machine is limited by {}: {} gains {:+.1f} %",
+                                    group.empty() ? words(limits) : fmt::format("{} ({})", group, words(limits)),
                                     text_at(gain, "action"), 100 * number_at(gain, "gain"));
       out += fmt::format(" (95 % of confidence, other seeds of the picture included: {:+.1f} % to {:+.1f} %)",
                          100 * low, 100 * high);

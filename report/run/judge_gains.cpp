@@ -3,8 +3,10 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "core/numeric/worth_naming.h"
+#include "report/run/part_groups.h"
 #include "report/text/number_text.h"
 #include "report/text/ratio.h"
 
@@ -56,7 +58,10 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
   if (!b.rivals.empty()) {
     constexpr std::size_t kShown = 3;
     std::size_t shown = 0;
-    text += "; not to be told apart from it:";
+    if (!b.group.empty())
+      text = fmt::format("{} ({} or {}): not to be told apart; {}", b.group, named->name, fmt::join(b.rivals, " or "),
+                         text);
+    text += b.group.empty() ? "; not to be told apart from it:" : "; then";
     for (const BottleneckGain& gain : b.gains)
       if (shown < kShown && std::find(b.rivals.begin(), b.rivals.end(), gain.name) != b.rivals.end())
         text += fmt::format("{} {} with {}", shown++ == 0 ? "" : ",", gain.name, gain_text(gain));
@@ -98,6 +103,9 @@ Bottleneck judge_gains(Bottleneck found) {
   for (const BottleneckGain& gain : found.gains)
     if (named != nullptr && &gain != named && gain.high > named->low && gain.high > kWorthIt)
       found.rivals.push_back(gain.name);
+  found.group = found.rivals.empty() ? "" : group_of(found.limits);
+  for (const std::string& rival : found.rivals)
+    if (group_of(rival) != found.group) found.group = "";
   found.verdict = verdict(found, named) + untried_text(found);
   return found;
 }

@@ -132,6 +132,7 @@ struct Bottleneck {
   bool complete = true;
   std::string limits{}, verdict{}, unlike{};
   std::vector<std::string> rivals{};
+  std::string group{};
   double rays_per_kilocycle = 0, noise = 0, deviation = 0;
   bool whole_frame = false;
   std::uint64_t paths = 0, rays = 0;
@@ -149,6 +150,7 @@ void describe(V& v, const Bottleneck& r) {
       "limits", r.limits, "",
       "class that gains most when relaxed; empty when none surely gains, or none gains 5 %, or nothing is found out");
   v.field("rivals", r.rivals, "", "further classes that may gain as much, as their intervals overlap");
+  v.field("group", r.group, "", "what these classes and `limits` have in common; empty if nothing, or none is a rival");
   v.field("verdict", r.verdict, "", "the same in words");
   v.field("unlike", r.unlike, "", "difference between pilot and run for which nothing is found out; empty if none");
   v.field("rays_per_kilocycle", r.rays_per_kilocycle, "rays/1000 cycles",

@@ -1,7 +1,12 @@
 #include "report/run/judge_gains.h"
 
+#include <set>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "core/config/relaxation.h"
+#include "report/run/part_groups.h"
 
 namespace carousel::report {
 namespace {
@@ -40,6 +45,34 @@ TEST(JudgeGains, SaysWhichClassesItCannotTellApart) {
   EXPECT_EQ(b.limits, "shading");
   EXPECT_THAT(b.rivals, ElementsAre("boxes"));
   EXPECT_THAT(b.verdict, HasSubstr("not to be told apart from it: boxes with +18.0 %"));
+}
+
+TEST(JudgeGains, ATieIsToldAsAGroupWithWhatItHasInCommon) {
+  Bottleneck found{.gains = {gain("memory_latency", 0.2, 0.15, 0.25), gain("l2_size", 0.18, 0.12, 0.24),
+                             gain("box_tests", 0.1, 0.05, 0.14)}};
+  const Bottleneck b = judge_gains(found);
+  EXPECT_EQ(b.group, "memory");
+  EXPECT_EQ(
+      b.verdict,
+      "memory (memory_latency or l2_size): not to be told apart; memory_latency: twice memory_latency gains +20.0 % "
+      "(+15.0 to +25.0 %); then l2_size with +18.0 % (+12.0 to +24.0 %)");
+  found.gains[2].high = 0.2;
+  EXPECT_EQ(judge_gains(found).group, "") << "testers are no memory";
+  found.gains[1].high = found.gains[2].high = 0.1;
+  EXPECT_EQ(judge_gains(found).group, "") << "nothing is as good";
+}
+
+TEST(JudgeGains, EachClassOfTheSearchHasAGroup) {
+  std::vector<Config> machines(4);
+  machines[1].testers.simt.warp = 8;
+  machines[2].bundles.size = 4;
+  machines[3].topology.shape = TopologyShape::kCentral;
+  machines[3].topology.form = CentralForm::kDistributor;
+  std::set<std::string> names;
+  for (const Config& machine : machines)
+    for (const Relaxation& one : relaxations(machine, [](const std::string&) { return true; })) names.insert(one.part);
+  EXPECT_GT(names.size(), 40u);
+  for (const std::string& name : names) EXPECT_NE(group_of(name), "") << name;
 }
 
 TEST(JudgeGains, OfManyRivalsItShowsThree) {
