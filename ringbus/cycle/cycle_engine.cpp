@@ -203,11 +203,14 @@ class CycleRun {
     for (const auto& cache : machine_.memory().caches()) {
       c.caches.push_back(cache->statistics());
       c.cached_lines.push_back(cache->lines());
+      c.recent_lines.push_back(cache->recent_lines());
       if (!machine_.parts().ahead_at(c.caches.size() - 1).empty()) c.fetched_ahead.push_back(cache->ahead());
     }
     for (const auto& resource : machine_.resources()) c.buffered.push_back(resource->shape_buffer().kept());
-    for (const auto& cache : machine_.memory().own_caches())
+    for (const auto& cache : machine_.memory().own_caches()) {
       (c.own_caches ? *c.own_caches : c.own_caches.emplace()) += cache->statistics();
+      c.own_recent.push_back(cache->recent_lines());
+    }
     c.parts = machine_.parts().counts();
     c.bytes = byte_ledger(machine_);
     if (options_.meter != nullptr) {

@@ -47,12 +47,15 @@ using BufferShapes = std::vector<std::vector<BufferedShapes>>;
 
 /// What a machine's caches and shape buffers hold before it starts, so that a pilot has the frame's share of first
 /// misses: a part of what they held at the end of the frame's run, drawn line by line. The rest are the lines that
-/// caches held at its start, if any; so a line that they held at both times is there. Shape buffers were empty then.
+/// caches held at its start, if any; so a line that they held at both times is there. Shape buffers and resources' own
+/// caches were empty then. A cache with more room than that of the run holds lines that this replaced, too, which stand
+/// first.
 struct WarmCaches {
   const CacheLines* lines = nullptr;  ///< at the end; null: the caches are cold
   double part = 0;
   const CacheLines* start = nullptr;      ///< null: they were cold
   const BufferShapes* buffers = nullptr;  ///< at the end; null: they are empty
+  const CacheLines* own = nullptr;        ///< of the resources' own caches at the end; null: they are cold
 
   /// Where the draw of a line or address falls, from 0 to 1. It is there at the start if that is below `part`.
   static double drawn(std::uint64_t line) {

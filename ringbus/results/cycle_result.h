@@ -142,11 +142,12 @@ struct CycleResult {
   std::vector<CacheCounts> caches;
   std::vector<AheadCounts> fetched_ahead;  ///< by cache, if a part asks for lines ahead
   PartCounts<Parts> parts;
-  std::optional<CacheCounts> own_caches;                 ///< sum over resources, if they have caches of their own
-  std::vector<std::vector<std::uint64_t>> cached_lines;  ///< by cache: its lines at the end, oldest first in each set
-  BufferShapes buffered;                                 ///< by resource, at the end
-  MemoryCounts memory;                                   ///< of all memories
-  std::uint64_t first_reads = 0;                         ///< lines read from memory that had not been read before
+  std::optional<CacheCounts> own_caches;  ///< sum over resources, if they have caches of their own
+  CacheLines cached_lines;                ///< by cache: its lines at the end
+  CacheLines recent_lines, own_recent;    ///< after those that they replaced; own_recent: by resource with an own cache
+  BufferShapes buffered;                  ///< by resource, at the end
+  MemoryCounts memory;                    ///< of all memories
+  std::uint64_t first_reads = 0;          ///< lines read from memory that had not been read before
   std::size_t memories = 1;
   std::optional<RayDataBytes> ray_data;  ///< if any is in memory
   CacheDrain drain;

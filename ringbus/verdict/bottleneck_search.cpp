@@ -222,13 +222,13 @@ class Search {
   }
 
   /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0). Where a pilot gains
-  /// more than the run may, the interval lies lower by that; and where it loses what more of a part does not, the
-  /// interval's upper end is as much higher. What the whole frame gains is known.
+  /// more than the run may, the interval lies lower by that; and where it loses what more of a part hardly does, the
+  /// interval's upper end is higher (gain_beyond()). What the whole frame gains is known.
   void note(std::size_t i, const Estimate& gain, std::size_t together) {
     const WhatIf& what = what_ifs_[i];
     const bool known = together == 1 && out_.whole;
-    const double lost = together == 1 && !known && !is_choice(what.name()) ? std::max(0.0, -gain.value) : 0,
-                 high = known ? gain.high : std::min(gain.high + lost, most(i)), value = std::min(gain.value, high),
+    const double beyond = known || together == 0 ? 0 : gain_beyond(gain, what.name()),
+                 high = known ? gain.high : std::min(gain.high + beyond, most(i)), value = std::min(gain.value, high),
                  low = gain.low - (gain.value - value);
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
     out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, low, high, together};
@@ -268,9 +268,9 @@ class Search {
     std::vector<std::size_t> worth =
         worth_a_second_look(out_.gains, of_memory || likeness_.other_cycles ? kFewest : kContenders, of_memory);
     const std::uint64_t paths = next_paths(worth);
-    if (paths <= out_.paths) return false;
+    if (paths <= out_.paths && !(out_.whole && paths > 0)) return false;
     out_.paths = paths;
-    pilots_.begin("larger pilot", worth.size() + 1, out_.paths);
+    pilots_.begin(paths < run_.paths ? "larger pilot" : "whole frame", worth.size() + 1, out_.paths);
     simulate_base(worth.size());
     if (out_.complete) relax_contenders(worth);
     return true;
@@ -307,6 +307,7 @@ class Search {
 
   /// Paths of a larger pilot, which is to relax these classes, or fewer of them; 0 if the budget has none.
   std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
+    if (out_.whole && budget_.left(kWithFrame, out_.simulated) < 1) return 0;
     if (!out_.unlike.empty()) return paths_after_unlike(budget_, out_.paths, cold_, out_.simulated, worth);
     if (worth.empty()) return 0;
     const double most = budget_.left(kAtMost, out_.simulated);
@@ -319,8 +320,14 @@ class Search {
       worth.resize(n);
       return wanted;
     }
-    const Gain& best = out_.gains[worth.front()];
-    if (best.gain < kWorthIt || worth_naming(best.gain, best.low)) return 0;
+    if (stops_ && named_gain(out_.gains)) return 0;  // the frame as configured is not known then
+    const std::optional<std::size_t> next = most_promising(out_.gains, [this](std::size_t i) {
+      const auto relaxed = relaxed_.find(i);
+      return relaxed != relaxed_.end() && relaxed->second.paths >= run_.paths;
+    });
+    if (!next) return 0;
+    std::erase(worth, *next);
+    worth.insert(worth.begin(), *next);
     return paths_against_noise(budget_, out_.paths, out_.simulated, worth);
   }
 
@@ -336,7 +343,7 @@ class Search {
       of = {twice, draw_, 0};
     else if (budget_.of(out_.paths, seeds) > budget_.left(kWithNoise, out_.simulated))
       of = seeds_;
-    if (budget_.of(of.paths, seeds) > budget_.left(kAtMost, out_.simulated)) return;
+    if (budget_.of(of.paths, seeds) > budget_.left(out_.whole && !cold_ ? kWithFrame : kAtMost, out_.simulated)) return;
     pilots_.begin("other seeds", seeds + (of.cycles > 0 ? 0 : 1), of.paths);
     pilots_.take(of.draw);
     std::deque<Config> machines;

@@ -14,6 +14,9 @@ namespace {
 /// `script/verdicts --drawn` lie in their intervals, also where the deviation is great.
 constexpr double kInOneClass = 0.75;
 
+/// Standard errors on both sides that hold 95 %, where some ten of 15 differences count as independent (Student's t).
+constexpr double kErrorsEachSide = 2.2;
+
 using cycle::CycleResult;
 using cycle::ProgressSample;
 
@@ -175,7 +178,7 @@ Estimate Foretelling::gain(PilotRun relaxed, double deviation, bool warms) const
   }
   const double gain = gain_by(w), of_frame = w.size() / frame_size_,
                off = whole() ? 0 : kInOneClass * std::abs(deviation) * (1 + gain) * (1 + gain) / 2,
-               half = std::hypot(2 * standard_error(d) * std::sqrt(1 + of_frame), off);
+               half = std::hypot(kErrorsEachSide * standard_error(d) * std::sqrt(1 + of_frame), off);
   const Estimate own{gain, gain - half, gain + half + still};
   if (by_rays_ == nullptr) return own;
   const Estimate by_rays = by_rays_->gain(relaxed, deviation, warms);

@@ -45,8 +45,8 @@ RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
   RunOptions options = options_;
   options.threads = threads;
   // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
-  options.warm = {&run_.result.cycle->cached_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths),
-                  run_.warm, &run_.result.cycle->buffered};
+  options.warm = {&run_.result.cycle->recent_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths),
+                  run_.warm, &run_.result.cycle->buffered, &run_.result.cycle->own_recent};
   std::uint64_t shown = 0;
   options.progress = [&](std::uint64_t completed) {
     const std::lock_guard lock(mutex_);

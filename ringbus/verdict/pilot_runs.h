@@ -41,7 +41,7 @@ inline constexpr double kScreening = 0.4;  ///< that the first pilot is to take
 inline constexpr double kWithNoise = 0.7;  ///< that all are to take, where larger pilots tell the noise
 inline constexpr double kWanted = 0.9;     ///< that all pilots are to take
 inline constexpr double kAtMost = 1.2;     ///< beyond which no simulation begins after the first pilot
-inline constexpr double kWithFrame = 1.6;  ///< the same, where the last one is the whole frame
+inline constexpr double kWithFrame = 1.9;  ///< the same, where the last one is the whole frame
 
 struct SearchBudget {
   std::uint64_t paths = 0, rays = 0;  ///< of the run

@@ -14,6 +14,7 @@
 #include "ringbus/results/cycle_result.h"
 #include "ringbus/verdict/bottleneck_search.h"
 #include "ringbus/verdict/cold_caches.h"
+#include "ringbus/verdict/foretell.h"
 #include "ringbus/verdict/what_if.h"
 
 namespace carousel::ringbus {
@@ -111,10 +112,17 @@ inline double most_gain(const cycle::CycleResult& run, std::string_view part, bo
   return std::min(own, fixed_work ? most_beside_work(run, part) : own) + kSchedule;
 }
 
-/// True if a class is relaxed by another rule, which may lose. More of a part lost 3 % or more in 15 of 660 relaxations
-/// of machines drawn by `script/verdicts --drawn`, and 7.5 % at most.
+/// True if a class is relaxed by another rule, which may lose.
 inline bool is_choice(std::string_view part) {
   return part == "issue_rule" || part == "shading_order" || part == "stragglers";
+}
+
+/// By how much more than its interval says a class may gain in the frame that loses in a pilot: what it loses. More of
+/// a part lost 3 % or more in 15 of 660 relaxations of machines drawn by `script/verdicts --drawn`, and 7.5 % at most:
+/// a pilot in which it surely loses more tells nothing of it, and it may gain 100 % or what the ledger allows.
+inline double gain_beyond(const Estimate& pilot, std::string_view part) {
+  constexpr double kMostLost = 0.075;
+  return pilot.high < -kMostLost && !is_choice(part) ? 1 - pilot.high : std::max(0.0, -pilot.value);
 }
 
 /// True if the parts of a class had nothing to do for more than half of the run.
@@ -220,6 +228,25 @@ inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gai
     std::stable_partition(out.begin(), out.end(), [&](std::size_t i) { return gains_of_cold_caches(gains[i].name); });
   out.resize(std::min(out.size(), most));
   return out;
+}
+
+/// The class that a whole frame, of which the gains of some classes are known, tells most about: of the one to be named
+/// and those that may gain more, the one that may gain most. Where none is to be named, the one that gains most, if
+/// that is worth naming. Absent if nothing may change.
+template <class Known>
+std::optional<std::size_t> most_promising(const std::vector<Gain>& gains, const Known& known) {
+  const std::optional<std::size_t> named = named_gain(gains);
+  std::optional<std::size_t> out;
+  bool rivals = !named;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    const Gain& gain = gains[i];
+    if (gain.together != 1 || known(i)) continue;
+    const bool may_be_best = named ? gain.high > gains[*named].gain + kEnough : gain.gain >= kWorthIt;
+    if (i != named && !may_be_best) continue;
+    rivals |= i != named;
+    if (!out || (named ? gain.high > gains[*out].high : gain.gain > gains[*out].gain)) out = i;
+  }
+  return rivals ? out : std::nullopt;
 }
 
 /// True if most of what the run waited for may be first reads of lines: memory was busy for most of it. Part of such a

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "ringbus/cycle/memory/memory_agent.h"
+#include "ringbus/results/class_use.h"
 #include "ringbus/results/memory_request.h"
 
 namespace carousel::ringbus::cycle {
@@ -56,7 +57,7 @@ MemoryConfig ShapeCache::own_cache(const MemoryConfig& config) {
 }
 
 void ShapeCache::warm(std::span<const std::uint64_t> lines, double from, double to) {
-  for (const std::uint64_t line : lines) {
+  for (const std::uint64_t line : lines.last(std::min<std::size_t>(lines.size(), tags_.room()))) {
     const double at = WarmCaches::drawn(line);
     if (from <= at && at < to) tags_.insert(line);
   }

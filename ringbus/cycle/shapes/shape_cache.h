@@ -63,9 +63,11 @@ class ShapeCache final : public Agent {
 
   /// This cache asks an L2 where other caches ask the memory.
   void ask_a_cache() { asks_a_cache_ = true; }
-  /// Holds those of these lines from the start whose number between 0 and 1, which each line has, is in [from, to).
+  /// Holds the last of these lines from the start, as many as it has room for, whose number between 0 and 1, which each
+  /// line has, is in [from, to).
   void warm(std::span<const std::uint64_t> lines, double from, double to);
   std::vector<std::uint64_t> lines() const { return tags_.lines(); }
+  std::vector<std::uint64_t> recent_lines() const { return tags_.recent(); }
   /// The run is over: sends all lines that have been written and are still here to memory, in the order of their
   /// addresses.
   void drain(Cycle now);

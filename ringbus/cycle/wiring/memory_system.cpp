@@ -124,12 +124,13 @@ std::optional<DramUse> MemorySystem::dram_use(Cycle end) const {
 }
 
 void MemorySystem::warm(const WarmCaches& from) {
-  const auto hold = [&](const CacheLines* lines, double begin, double end) {
-    if (lines == nullptr || lines->size() != caches_.size()) return;
-    for (std::size_t c = 0; c < caches_.size(); ++c) caches_[c]->warm((*lines)[c], begin, end);
+  const auto hold = [](const auto& caches, const CacheLines* lines, double begin, double end) {
+    if (lines == nullptr || lines->size() != caches.size()) return;
+    for (std::size_t c = 0; c < caches.size(); ++c) caches[c]->warm((*lines)[c], begin, end);
   };
-  hold(from.start, from.part, 1);  // first, since they are older
-  hold(from.lines, 0, from.part);
+  hold(caches_, from.start, from.part, 1);  // first, since they are older
+  hold(caches_, from.lines, 0, from.part);
+  hold(own_, from.own, 0, from.part);
 }
 
 CacheDrain MemorySystem::drain(Cycle end, const std::vector<Agent*>& between, Cycle quiet_from) {

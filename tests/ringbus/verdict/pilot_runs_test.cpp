@@ -2,10 +2,12 @@
 // at a time, and an error of one simulation reaches the caller. Small enough for ThreadSanitizer.
 #include "ringbus/verdict/pilot_runs.h"
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -121,6 +123,73 @@ TEST(PilotRuns, BeginWithTheShapesOfTheRunsBuffers) {
   EXPECT_LT(misses(run(small, {.part = 1, .buffers = &own})), misses(narrow));
 }
 
+std::uint64_t own_misses(const RunResult& run) {
+  return run.cycle->own_caches->misses;
+}
+
+// All shapes fit into the resources' own caches, and a machine that begins with what these held fetches nothing.
+TEST(PilotRuns, BeginWithTheLinesOfTheRunsOwnCaches) {
+  PilotCase pilot;
+  Config config = pilot.machines[0];
+  config.memory.l1_kib = 64;
+  config.memory.shape_buffer_kib = 2;
+  const accel::Accel& accel = pilot.scene.accel(config.bvh);
+  const auto run = [&](const cycle::WarmCaches& warm) {
+    RunOptions options = on_threads(1);
+    options.warm = warm;
+    ScatterWorkload workload = pilot.scene.workload();
+    return run_cycle(config, accel, pilot.scene.size(), workload, options);
+  };
+  const RunResult cold = run({});
+  const cycle::CacheLines& all = cold.cycle->own_recent;
+  ASSERT_EQ(all.size(), 2u);
+  ASSERT_GT(own_misses(cold), 100u);
+  EXPECT_EQ(own_misses(run({.part = 1, .own = &all})), 0u);
+  const std::uint64_t half = own_misses(run({.part = 0.5, .own = &all}));
+  EXPECT_GT(half, own_misses(cold) / 4);
+  EXPECT_LT(half, own_misses(cold) * 3 / 4);
+  const SearchedRun searched{cold, 8 * kPilotRays};
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
+  const RunOptions plain = on_threads(1);
+  const SearchObserver nobody;
+  PilotRuns runs(accel, pilot.scene.size(), pilots, searched, plain, nobody);
+  runs.begin("pilot", 1, kPilotRays);
+  EXPECT_LT(own_misses(runs.simulate({&config}).front()), own_misses(cold) / 4);
+}
+
+// An L2 of 4 KiB tells with its lines those that it replaced. Most of what one with twice the room holds at the end of
+// the same run is among them, and a machine with the same room begins as it would without them.
+TEST(PilotRuns, ALargerCacheBeginsWithLinesThatTheRunsReplaced) {
+  PilotCase pilot;
+  Config small = pilot.machines[0], large = small;
+  small.memory.l2_kib = 4;
+  large.memory.l2_kib = 8;
+  small.memory.shape_buffer_kib = large.memory.shape_buffer_kib = 2;
+  const accel::Accel& accel = pilot.scene.accel(small.bvh);
+  const auto run = [&](const Config& machine, const cycle::CacheLines* lines) {
+    RunOptions options = on_threads(1);
+    options.warm = {.lines = lines, .part = 1};
+    ScatterWorkload workload = pilot.scene.workload();
+    return std::move(*run_cycle(machine, accel, pilot.scene.size(), workload, options).cycle);
+  };
+  const cycle::CacheLines recent = run(small, nullptr).recent_lines;
+  cycle::CacheLines held = recent;
+  const std::size_t room = 4 * 1024 / 64;
+  ASSERT_GT(recent.front().size(), room) << "with lines that were replaced";
+  EXPECT_LE(recent.front().size(), 2 * room);
+  held.front().erase(held.front().begin(), held.front().end() - room);
+  std::vector<std::uint64_t> of_large = run(large, nullptr).recent_lines.front();
+  of_large.erase(of_large.begin(), of_large.end() - 2 * room);
+  const auto among = [&](const std::vector<std::uint64_t>& lines) {
+    return std::count_if(of_large.begin(), of_large.end(), [&](std::uint64_t line) {
+      return std::find(lines.begin(), lines.end(), line) != lines.end();
+    });
+  };
+  EXPECT_GT(among(recent.front()), among(held.front()) * 5 / 4);
+  EXPECT_EQ(run(small, &recent).cycles, run(small, &held).cycles);
+  EXPECT_NE(run(large, &recent).cycles, run(large, &held).cycles);
+}
+
 TEST(PilotRuns, HandOnAnError) {
   PilotCase pilot;
   std::atomic<int> begun{0};
@@ -233,18 +302,17 @@ TEST(SearchBudget, AColdFrameFollowsAPilotThatIsNotLikeIt) {
   EXPECT_EQ(cold, std::vector<std::size_t>{7});
   EXPECT_EQ(paths_after_unlike(budget, 100, false, 2000, warm), 200);
   EXPECT_EQ(warm, (std::vector<std::size_t>{7, 8}));
-  EXPECT_EQ(paths_after_unlike(budget, 100, true, 3500, late), 200) << "the frame would be beyond the budget";
+  EXPECT_EQ(paths_after_unlike(budget, 100, true, 4600, late), 0) << "the frame would be beyond the budget";
   EXPECT_EQ(paths_after_unlike(budget, 100, true, 2000, none), 200) << "no class is left to relax";
 }
 
-// Of 5,000 rays 2,900 have been simulated, and the whole frame keeps within the budget; or 3,500.
+// Of 5,000 rays 2,900 have been simulated, and the whole frame keeps within the budget; or 4,600.
 TEST(SearchBudget, TheWholeFrameTellsAGainFromNoiseIfThereAreRaysForIt) {
   const SearchBudget budget{1000, 5000};
   std::vector<std::size_t> classes{7, 8}, late = classes;
   EXPECT_EQ(paths_against_noise(budget, 100, 2900, classes), 1000);
   EXPECT_EQ(classes, std::vector<std::size_t>{7});
-  EXPECT_EQ(paths_against_noise(budget, 100, 3500, late), 200);
-  EXPECT_EQ(late, std::vector<std::size_t>{7});
+  EXPECT_EQ(paths_against_noise(budget, 100, 4600, late), 0);
 }
 
 // A part that differs by 15 points or less is borne with; of two such, or of one that differs by more, those count that
@@ -260,6 +328,42 @@ TEST(PilotLikeness, OnlyAPartThatMattersVetoesAnAnswer) {
   off.parts = {{"memory_bandwidth", 0.4, 0.3}, {"shading", 0.8, 0.9}};
   EXPECT_EQ(off.veto(matters), "its shading is 80 % busy, and the run's 90 %");
   EXPECT_EQ(off.veto(shading_does), "");
+  off.cycles = 97575;
+  off.deviation = 0.365;
+  off.other_cycles = true;
+  EXPECT_EQ(off.veto(shading_does), "it foretells 97575 cycles for the frame, -26.7 % of the run's");
+}
+
+TEST(SearchChoices, WhatLosesInAPilotMayGainAsMuchInTheFrame) {
+  EXPECT_EQ(gain_beyond({0.1, 0, 0.2}, "l2_size"), 0);
+  EXPECT_EQ(gain_beyond({-0.1, -0.2, 0}, "l2_size"), 0.1);
+  EXPECT_EQ(gain_beyond({-0.2, -0.3, -0.1}, "l2_size"), 1.1) << "up to 100 %";
+  EXPECT_EQ(gain_beyond({-0.2, -0.3, -0.1}, "issue_rule"), 0.2) << "another rule may lose";
+}
+
+Gain relaxed_alone(double value, double low, double high) {
+  Gain gain;
+  gain.gain = value;
+  gain.low = low;
+  gain.high = high;
+  return gain;
+}
+
+// The frame tells of that one which may gain most, and of none if nothing may gain more than the class to be named.
+TEST(SearchChoices, TheFrameTellsOfWhatMayGainMost) {
+  std::vector<Gain> gains{relaxed_alone(0.4, 0.3, 0.5), relaxed_alone(0.3, -0.1, 0.7), relaxed_alone(0.2, 0.1, 0.42)};
+  const auto none = [](std::size_t) { return false; };
+  EXPECT_EQ(most_promising(gains, none), 1u);
+  EXPECT_EQ(most_promising(gains, [](std::size_t i) { return i == 1; }), std::nullopt)
+      << "the third gains hardly more than the first";
+  gains[1].high = 0.45;
+  EXPECT_EQ(most_promising(gains, none), 0u) << "the class to be named may gain most";
+  EXPECT_EQ(most_promising(gains, [](std::size_t i) { return i == 0; }), 1u);
+  gains[1].together = 2;
+  EXPECT_EQ(most_promising(gains, none), std::nullopt) << "it has no gain of its own";
+  EXPECT_EQ(most_promising({relaxed_alone(0.04, -0.1, 0.2), relaxed_alone(0.1, -0.1, 0.2)}, none), 1u)
+      << "none is to be named";
+  EXPECT_EQ(most_promising({relaxed_alone(0.04, -0.1, 0.2)}, none), std::nullopt);
 }
 
 TEST(SearchChoices, AClassStandsOutUnlessCyclesAreFarOff) {

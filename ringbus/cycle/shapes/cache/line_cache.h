@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <unordered_set>
 #include <vector>
 
 #include "core/numeric/divisor.h"
@@ -42,6 +43,20 @@ class LineCache {
           if (states_.empty() || (states_[i].here >> p & 1) != 0) out.push_back(lines_[i] * parts_ + p);
     return out;
   }
+  /// Parts that are not there any more, the last one that was replaced last; as many as there is room for, at most.
+  std::vector<std::uint64_t> replaced() const {
+    std::vector<std::uint64_t> out;
+    std::unordered_set<std::uint64_t> seen;
+    for (const std::uint64_t line : lines_) seen.insert(line);
+    for (std::size_t k = 0; k < replaced_.size(); ++k) {
+      const std::uint64_t line = replaced_[(next_replaced_ + replaced_.size() - 1 - k) % replaced_.size()];
+      if (!seen.insert(line).second) continue;
+      for (std::uint64_t p = parts_; p-- > 0;) out.push_back(line * parts_ + p);
+    }
+    std::reverse(out.begin(), out.end());
+    return out;
+  }
+  std::uint64_t room() const { return sets_.value() * ways_ * parts_; }  ///< in parts
   /// Parts of a line that was replaced which had been written: those from `first_part` on whose bits are set.
   struct Replaced {
     std::uint64_t first_part = 0, written = 0;
@@ -53,6 +68,7 @@ class LineCache {
     while (i + 1 < ways_ && lines_[first + i] != line) ++i;
     const bool replaces = lines_[first + i] != line;
     Replaced out;
+    if (replaces && lines_[first + i] != kEmpty) note_replaced(lines_[first + i]);
     if (replaces && !states_.empty()) {
       out = {lines_[first + i] * parts_, states_[first + i].written};
       states_[first + i] = {};
@@ -79,6 +95,11 @@ class LineCache {
   };
   std::uint64_t line_of(std::uint64_t part) const { return parts_ == 1 ? part : part / parts_; }
   std::uint64_t bit(std::uint64_t part) const { return std::uint64_t{1} << part % parts_; }
+  void note_replaced(std::uint64_t line) {
+    if (replaced_.size() < lines_.size()) return replaced_.push_back(line);
+    replaced_[next_replaced_] = line;
+    next_replaced_ = next_replaced_ + 1 == replaced_.size() ? 0 : next_replaced_ + 1;
+  }
   template <class T>
   static void shift(T* set, std::uint64_t i) {
     const T front = set[i];
@@ -93,8 +114,10 @@ class LineCache {
   std::uint64_t ways_;
   Divisor sets_;
   std::uint64_t parts_;
-  std::vector<std::uint64_t> lines_;  // by set, most recently used first
-  std::vector<State> states_;         // by line; empty if a line comes as a whole and is never written here
+  std::vector<std::uint64_t> lines_;     // by set, most recently used first
+  std::vector<State> states_;            // by line; empty if a line comes as a whole and is never written here
+  std::vector<std::uint64_t> replaced_;  // lines, as in a ring once there are as many as there is room for
+  std::size_t next_replaced_ = 0;        // where the next one stands then
 };
 
 }  // namespace carousel::ringbus::cycle

@@ -37,6 +37,15 @@ std::vector<std::uint64_t> TagArray::lines() const {
   return lines;
 }
 
+std::vector<std::uint64_t> TagArray::recent() const {
+  std::vector<std::uint64_t> recent = ways_.replaced();
+  const std::vector<std::uint64_t> rays = ray_ways_ ? ray_ways_->replaced() : std::vector<std::uint64_t>{},
+                                   here = lines();
+  recent.insert(recent.end(), rays.begin(), rays.end());
+  recent.insert(recent.end(), here.begin(), here.end());
+  return recent;
+}
+
 std::vector<std::uint64_t> TagArray::take_written() {
   std::vector<std::uint64_t> written;
   ways_.take_written(written);
