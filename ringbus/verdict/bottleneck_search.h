@@ -63,7 +63,8 @@ struct Bottleneck {
 /// is sure then which class to name, the search ends. Else those that may be worth naming, at most six, are simulated
 /// for a larger one, the most promising first. A pilot that is not like the run is doubled, unless a class is worth
 /// naming in spite of the difference, which widens the intervals; where it is not, nothing is found out. The whole
-/// frame comes instead, for one class, if its caches are cold. No simulation begins beyond the budget (pilot_runs.h),
+/// frame comes instead, for one class, if its caches are cold; and it comes last for the class that may gain most, if
+/// another than the one to be named may be the best. No simulation begins beyond the budget (pilot_runs.h),
 /// and a frame that is too small for it is not searched.
 ///
 /// The machine as configured is simulated with run.noise_seeds other seeds, for the noise of the run's cycles, by a
