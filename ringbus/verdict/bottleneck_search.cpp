@@ -1,7 +1,6 @@
 #include "ringbus/verdict/bottleneck_search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <deque>
 #include <limits>
 #include <map>
@@ -55,8 +54,7 @@ class Search {
     screen(groups);
     note_phases();
     seeds_ = {out_.paths, draw_, base_.cycle ? static_cast<double>(base_.cycle->cycles) : 0};
-    while (out_.complete && !told() && look_again()) {
-    }
+    while (out_.complete && !told() && look_again()) continue;
     if (out_.complete) judge();
     if (out_.complete) find_noise();
     if (!out_.complete || !out_.unlike.empty()) {
@@ -256,10 +254,7 @@ class Search {
 
   /// Notes the gains of classes that were relaxed with the present pilot, with what this is known to be off by.
   void estimate(const std::vector<std::size_t>& classes) {
-    for (const std::size_t i : classes) {
-      const RunResult& result = relaxed_[i].result;
-      note(i, gain_of({i}, result), 1);
-    }
+    for (const std::size_t i : classes) note(i, gain_of({i}, relaxed_[i].result), 1);
   }
 
   /// Simulates a larger pilot if it may tell more, and returns true then.
@@ -336,9 +331,8 @@ class Search {
   void find_noise() {
     if (noise_seeds_ == 0) return;
     const auto seeds = static_cast<std::size_t>(noise_seeds_);
-    const double base = static_cast<double>(base_.cycle->cycles);
     const std::uint64_t twice = 2 * out_.paths;
-    BasePilot of{out_.paths, draw_, base};
+    BasePilot of{out_.paths, draw_, static_cast<double>(base_.cycle->cycles)};
     if (twice <= run_.paths && budget_.of(twice, seeds + 1) <= budget_.left(kWithNoise, out_.simulated))
       of = {twice, draw_, 0};
     else if (budget_.of(out_.paths, seeds) > budget_.left(kWithNoise, out_.simulated))
