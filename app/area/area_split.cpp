@@ -76,6 +76,7 @@ bool scale_workers(Config& c, int step) {
 std::optional<Config> machine_of(const LocatedConfig& given, const SceneFacts& scene, const AreaSplit& split) {
   Config scaled = given.config;
   scaled.area.fit = AreaConfig::Fit::kRefuse;
+  scaled.area.aim = AreaConfig{}.aim;
   for (const int step : split.steps)
     if (std::abs(step) > AreaSplit::kMostSteps) return std::nullopt;
   if (!scale_testers(scaled, scene, split.steps[AreaSplit::kTesters]) ||

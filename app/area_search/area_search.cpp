@@ -44,16 +44,18 @@ class Search {
       : p_(prepared), given_(given), scene_(ringbus::scene_facts(prepared.accel)), interrupt_(interrupt) {
     out_.budget_mm2 = static_cast<double>(*given.config.area.budget_mm2);
     out_.fraction = fraction();
+    out_.aim = enum_name(given.config.area.aim);
     if (!quiet) line_.emplace(stderr);
   }
 
   report::AreaSearch take() {
     Phase phase("area");
     AreaSplit best;
-    if (!cycles_of(best)) fit_area(p_.located = given_, scene_);  // there is no machine, and this says why
-    out_.ended = "no neighbour of the chosen split is faster";
-    while (const std::optional<AreaSplit> next = faster_neighbour(best)) best = *next;
-    if (out_.fraction < own_fraction()) best = faster_in_the_frame();
+    if (!cost_of(best)) fit_area(p_.located = given_, scene_);  // there is no machine, and this says why
+    out_.ended =
+        fmt::format("no neighbour of the chosen split {}", out_.for_joules() ? "takes fewer joules" : "is faster");
+    while (const std::optional<AreaSplit> next = better_neighbour(best)) best = *next;
+    if (out_.fraction < own_fraction()) best = better_in_the_frame();
     const std::size_t chosen = trial_of_.at(best);
     out_.trials[chosen].chosen = true;
     set_machine(p_, located(*machine_of(given_, scene_, best)));
@@ -82,9 +84,11 @@ class Search {
     return out;
   }
 
-  /// The foretold cycles of a split; none if there is no such machine.
-  std::optional<double> cycles_of(const AreaSplit& split) {
-    if (const auto known = trial_of_.find(split); known != trial_of_.end()) return out_.trials[known->second].cycles;
+  double cost_of(std::size_t trial) const { return out_.cost(out_.trials[trial]); }
+
+  /// What the best split has least of, as foretold; none if there is no such machine.
+  std::optional<double> cost_of(const AreaSplit& split) {
+    if (const auto known = trial_of_.find(split); known != trial_of_.end()) return cost_of(known->second);
     if (impossible_.contains(split)) return std::nullopt;
     std::optional<Config> machine = machine_of(given_, scene_, split);
     if (!machine || !holds(*machine, out_.fraction)) {
@@ -93,7 +97,7 @@ class Search {
     }
     trial_of_.emplace(split, out_.trials.size());
     out_.trials.push_back(simulate(*machine));
-    return out_.trials.back().cycles;
+    return cost_of(out_.trials.size() - 1);
   }
 
   /// Gives the scene this machine, for a part of the frame; false if it does not hold it.
@@ -124,6 +128,10 @@ class Search {
     return r.sampled ? r.sampled->cycles.estimate : static_cast<double>(*r.engine.cycles);
   }
 
+  static double nj_per_ray_of(const report::Report& r) {
+    return r.sampled ? r.sampled->nj_per_ray->estimate : r.energy->nj_per_ray;
+  }
+
   report::AreaTrial simulate(const Config& machine) {
     const report::Report r = run();
     report::AreaTrial out;
@@ -135,35 +143,39 @@ class Search {
     out.shader_workers = static_cast<std::uint64_t>(shader_workers(machine));
     out.mm2 = r.area->mm2;
     out.cycles = cycles_of(r);
+    out.nj_per_ray = nj_per_ray_of(r);
     return out;
   }
 
-  /// Simulates the two splits with the fewest foretold cycles on the frame of the run, and returns the faster one:
-  /// samples may have their order wrong.
-  AreaSplit faster_in_the_frame() {
+  /// Simulates the two best splits once more, on the frame of the run, and returns the better one: samples may have
+  /// their order wrong.
+  AreaSplit better_in_the_frame() {
     std::vector<AreaSplit> splits(out_.trials.size());
     for (const auto& [split, trial] : trial_of_) splits[trial] = split;
-    const auto foretold = [&](const AreaSplit& split) { return out_.trials[trial_of_.at(split)].cycles; };
+    const auto foretold = [&](const AreaSplit& split) { return cost_of(trial_of_.at(split)); };
     std::stable_sort(splits.begin(), splits.end(),
                      [&](const AreaSplit& a, const AreaSplit& b) { return foretold(a) < foretold(b); });
     AreaSplit best = splits.front();
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < std::min<std::size_t>(2, splits.size()); ++i) {
       if (!holds(*machine_of(given_, scene_, splits[i]), own_fraction())) continue;
-      const double cycles = cycles_of(run());
-      out_.trials[trial_of_.at(splits[i])].frame_cycles = cycles;
-      if (cycles < least) {
-        least = cycles;
+      const report::Report r = run();
+      const double cycles = cycles_of(r), nj_per_ray = nj_per_ray_of(r), cost = out_.for_joules() ? nj_per_ray : cycles;
+      report::AreaTrial& trial = out_.trials[trial_of_.at(splits[i])];
+      trial.frame_cycles = cycles;
+      trial.frame_nj_per_ray = nj_per_ray;
+      if (cost < least) {
+        least = cost;
         best = splits[i];
       }
     }
     return best;
   }
 
-  /// The fastest neighbour, if it is faster. Of equal ones the first that was tried.
-  std::optional<AreaSplit> faster_neighbour(const AreaSplit& split) {
+  /// The best neighbour, if it is better. Of equal ones the first that was tried.
+  std::optional<AreaSplit> better_neighbour(const AreaSplit& split) {
     std::optional<AreaSplit> best;
-    double least = out_.trials[trial_of_.at(split)].cycles;
+    double least = cost_of(trial_of_.at(split));
     for (std::size_t part = 0; part < AreaSplit::kParts; ++part) {
       for (const int by : {1, -1}) {
         AreaSplit next = split;
@@ -172,8 +184,8 @@ class Search {
           out_.ended = fmt::format("{} splits had been tried", kMostTrials);
           continue;
         }
-        if (const std::optional<double> cycles = cycles_of(next); cycles && *cycles < least) {
-          least = *cycles;
+        if (const std::optional<double> cost = cost_of(next); cost && *cost < least) {
+          least = *cost;
           best = next;
         }
       }

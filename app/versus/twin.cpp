@@ -145,6 +145,7 @@ Config plain_twin(const Config& c) {
   t.shading.idle_resources_shade = false;
   t.area.budget_mm2.reset();
   t.area.fit = AreaConfig{}.fit;
+  t.area.aim = AreaConfig{}.aim;
   return t;
 }
 

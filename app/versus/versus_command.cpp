@@ -35,7 +35,8 @@ int versus_command(const VersusArguments& arguments) {
     resolved = resolved_yaml(config);
     output.emplace(folder, &config, arguments.force, Results::kVersus);
   });
-  const bool best = is_searched(p.config().area);
+  std::optional<AreaConfig::Aim> best;
+  if (is_searched(p.config().area)) best = p.config().area.aim;
   std::optional<report::AreaSearch> search;
   if (best) search = search_area(p, LocatedConfig(p.located), interrupt, arguments.quiet);
   report::Versus versus = run_versus(p, {arguments.seeds, !arguments.no_search, arguments.quiet, best}, interrupt);

@@ -36,6 +36,7 @@ class VersusRuns {
     located_.config.engine.what_if = false;
     located_.config.area.budget_mm2.reset();  // the machine has been fitted
     located_.config.area.fit = AreaConfig{}.fit;
+    located_.config.area.aim = AreaConfig{}.aim;
     located_.config.verify = Verify::kNone;
     if (located_.config.energy.profile == CostProfile::kNone) located_.config.energy.profile = CostProfile::kN45;
     if (!settings.quiet) line_.emplace(stderr);
@@ -147,6 +148,7 @@ class VersusRuns {
   void add_at_equal_area(report::Versus& out, Config twin, double mm2) {
     twin.area.budget_mm2 = static_cast<float>(mm2);
     twin.area.fit = settings_.best ? AreaConfig::Fit::kBest : AreaConfig::Fit::kAll;
+    twin.area.aim = settings_.best.value_or(AreaConfig{}.aim);
     LocatedConfig fitted = located(twin);
     try {
       fit_area(fitted, ringbus::scene_facts(p_.accel));
@@ -160,6 +162,7 @@ class VersusRuns {
     fitted.config.area = twin.area;
     fitted.config.area.budget_mm2.reset();
     fitted.config.area.fit = AreaConfig{}.fit;
+    fitted.config.area.aim = AreaConfig{}.aim;
     add(out, "twin_at_equal_area", fitted.config);
   }
 

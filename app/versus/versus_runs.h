@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "app/host/interrupt.h"
 #include "app/run/prepare.h"
@@ -12,7 +13,7 @@ struct VersusSettings {
   std::uint64_t seeds = 3;
   bool search = true;  ///< relax each class of parts of the slower machine
   bool quiet = false;
-  bool best = false;  ///< the twin at equal area gets its best split (area.fit: best)
+  std::optional<AreaConfig::Aim> best{};  ///< the twin at equal area gets its best split (area.fit: best), by this
 };
 
 /// Simulates the machine of `prepared`, its conventional twin, and the twin at equal area, each with as many seeds of

@@ -318,6 +318,8 @@ constexpr Row kRows[] = {
     {"sampling.strata", kSampled},
     {"sampling.seed", kSampled},
     {"area.fit", kBudget},
+    {"area.aim", kBudget},
+    {"area.aim", kBestSplit},
     {"area.link_mm", kProfile},
     {"energy.dram", kNoHbm},
     {"energy.dram_activation", kNoHbm},

@@ -377,6 +377,8 @@ inline constexpr Condition kProfile{[](const C& c, const S&) { return c.energy.p
                                     "energy.profile is none"};
 inline constexpr Condition kBudget{[](const C& c, const S&) { return c.area.budget_mm2.has_value(); },
                                    "there is no area.budget_mm2"};
+inline constexpr Condition kBestSplit{[](const C& c, const S&) { return c.area.fit == AreaConfig::Fit::kBest; },
+                                      "area.fit is not best"};
 inline constexpr Condition kSkyOfOneColor{[](const C& c, const S&) { return !has_sky_map(c); },
                                           "the sky is a map (scene.sky.file)"};
 // Where there is no section of a sky, its first key makes one, which takes the place of a built-in scene's own sky.

@@ -264,9 +264,10 @@ void energy_lines(Table& table, const Report& report) {
   if (const AreaTrial* best = a.search ? a.search->chosen() : nullptr)
     table.line("",
                "best of {} splits: {} resources, {} testers each, L2 {} KiB with {} ports, {} workers   {:.3g} times "
-               "the first",
+               "{}",
                a.search->trials.size(), best->resources, best->testers, best->l2_kib, best->l2_lines_per_cycle,
-               best->shader_workers, ratio(a.search->trials.front().cycles, best->cycles));
+               best->shader_workers, a.search->gain(),
+               a.search->for_joules() ? "the rays a joule of the first" : "the first");
 }
 
 std::string image_text(const nlohmann::ordered_json& config) {

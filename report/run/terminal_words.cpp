@@ -209,7 +209,8 @@ void energy_words(Words& w) {
   });
   w.item("best of N splits: N resources, N testers each, L2 N KiB with N ports, N workers", "area.search.trials",
          "the split of area.budget_mm2 that the machine has")
-      .item("N times the first", "area.search.trials[].cycles", "speed over that of the split tried first");
+      .item("N times the first", "area.search.trials[].cycles", "speed over that of the split tried first")
+      .item("N times the rays a joule of the first", "area.search.trials[].nj_per_ray", "with area.aim: joules");
 }
 
 void test_words(Words& w) {

@@ -240,8 +240,8 @@ void describe(V& v, const AreaParts& r) {
 /// A split of the budget that was simulated.
 struct AreaTrial {
   std::uint64_t resources = 0, testers = 0, l2_kib = 0, l2_lines_per_cycle = 0, shader_workers = 0;
-  double mm2 = 0, cycles = 0;
-  std::optional<double> frame_cycles{};
+  double mm2 = 0, cycles = 0, nj_per_ray = 0;
+  std::optional<double> frame_cycles{}, frame_nj_per_ray{};
   bool chosen = false;
 };
 
@@ -254,15 +254,17 @@ void describe(V& v, const AreaTrial& r) {
   v.field("shader_workers", r.shader_workers, "workers", "shader workers");
   v.field("mm2", r.mm2, "mm2", "area of the machine");
   v.field("cycles", r.cycles, "cycles", "foretold cycles of the frame: of a whole frame exact, else estimated");
+  v.field("nj_per_ray", r.nj_per_ray, "nJ/ray", "foretold energy for each completed ray, likewise");
   v.field("frame_cycles", r.frame_cycles, "cycles",
           "of sampled trials the two best ones: cycles of the frame as the run has it");
-  v.field("chosen", r.chosen, "", "true for the split that the machine has: the one with the fewest cycles of these");
+  v.field("frame_nj_per_ray", r.frame_nj_per_ray, "nJ/ray", "likewise energy for each completed ray");
+  v.field("chosen", r.chosen, "", "true for the split that the machine has: the one with the least of the aim");
 }
 
 /// The search for the best split of a budget, with area.fit: best.
 struct AreaSearch {
   double budget_mm2 = 0, fraction = 1;
-  std::string ended;
+  std::string aim, ended;
   std::vector<AreaTrial> trials{};
 
   const AreaTrial* chosen() const {
@@ -270,11 +272,16 @@ struct AreaSearch {
       if (trial.chosen) return &trial;
     return nullptr;
   }
+  bool for_joules() const { return aim == "joules"; }
+  double cost(const AreaTrial& trial) const { return for_joules() ? trial.nj_per_ray : trial.cycles; }
+  /// The first split's cost over that of the chosen one.
+  double gain() const { return ratio(cost(trials.front()), cost(*chosen())); }
 };
 
 template <class V>
 void describe(V& v, const AreaSearch& r) {
   v.field("budget_mm2", r.budget_mm2, "mm2", "area that was split");
+  v.field("aim", r.aim, "", "what the best split has least of: area.aim");
   v.field("fraction", r.fraction, "fraction", "part of the frame that each trial simulated");
   v.field("ended", r.ended, "", "reason for the end of the search");
   v.section("trials", r.trials, "every split that was simulated, in order");

@@ -277,6 +277,7 @@ KEYS = {
     **{f"{_section}.{_part}": SILHOUETTES for _section in ("energy", "area") for _part in ("silhouette", "edge")},
     "energy.prefetch_vote": SIMT_PREFETCH + ["energy.profile=n45"],
     "area.fit": ["energy.profile=n45", "area.budget_mm2=300"],
+    "area.aim": ["energy.profile=n45", "area.budget_mm2=300", "area.fit=best"],
     "workload": ["workload={traffic: {pattern: uniform, rate: 0.1}}"],
     "workload.rays_from": RAY_FILE,
     "workload.memory_trace": ["workload.memory_trace=requests.csv"],

@@ -88,4 +88,5 @@ VARYING_RUNS = ("native", "native-stopped", "ranks")
 
 # Numbers that no run has, and why.
 NONE = {"memory.own_caches.ahead": "no part asks caches of the resources' own for lines ahead yet",
-        "area.search.trials[].frame_cycles": "trials of frames of more than 200,000 paths alone are sampled, which take minutes"}
+        **{f"area.search.trials[].frame_{_what}": "trials of frames of more than 200,000 paths alone are sampled, which take minutes"
+           for _what in ("cycles", "nj_per_ray")}}

@@ -27,14 +27,21 @@ struct EnergyConfig {
 struct AreaConfig {
   std::optional<float> budget_mm2;
   enum class Fit { kResources, kAll, kBest, kRefuse } fit = Fit::kResources;
-  std::optional<float> link_mm;  ///< absent: the side of a square of a resource's area
-  OwnCosts own;                  ///< values for the rows of this section, where given
+  enum class Aim { kCycles, kJoules } aim = Aim::kCycles;  ///< of a search for the best split
+  std::optional<float> link_mm;                            ///< absent: the side of a square of a resource's area
+  OwnCosts own;                                            ///< values for the rows of this section, where given
 };
 
 template <>
 inline constexpr auto kEnumNames<AreaConfig::Fit> = [] {
   using enum AreaConfig::Fit;
   return names<AreaConfig::Fit>({{kResources, "resources"}, {kAll, "all"}, {kBest, "best"}, {kRefuse, "refuse"}});
+}();
+
+template <>
+inline constexpr auto kEnumNames<AreaConfig::Aim> = [] {
+  using enum AreaConfig::Aim;
+  return names<AreaConfig::Aim>({{kCycles, "cycles"}, {kJoules, "joules"}});
 }();
 
 namespace config {
@@ -64,9 +71,12 @@ void describe(V& v, AreaConfig& c) {
        "With a budget the machine gets the largest number of resources that stays within it, whatever "
        "topology.resources says. With all, shading.workers grows by the same factor, and so do size and banks of an "
        "L2 that all resources share. With best at most 40 splits between resources, their testers, shared caches, "
-       "ports and shader workers are simulated, from the machine of all on, and the fastest is taken. With refuse a "
-       "larger machine is an error.")
+       "ports and shader workers are simulated, from the machine of all on, and the best is taken, by area.aim. With "
+       "refuse a larger machine is an error.")
       .only(EngineKind::kCycle, "search for the best split", AreaConfig::Fit::kBest);
+  v.choice("aim", c.aim,
+           "What the best split has least of: cycles of the frame, or joules of a completed ray, those of "
+           "energy.nj_per_ray.");
   v.field_or_auto(
       "link_mm", c.link_mm, RealRange{0, 1000}, "mm",
       "The length of a link between neighbours. With auto it is the side of a square of a resource's area.");

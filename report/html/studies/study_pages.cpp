@@ -149,7 +149,7 @@ std::string versus_page(const Json& versus) {
       splits += table_of_rows(search, search == std::string("search") ? "Of this machine" : "Of the twin at equal area",
                               *trials,
                               [](const Json& row) { return fmt::format("{} resources", row["resources"].get<int>()); },
-                              {"cycles", "mm2"})
+                              {"cycles", "nj_per_ray", "mm2"})
                     .html();
   Html glance;
   for (std::size_t i = 0; i < versus["lines"].size(); ++i)

@@ -315,6 +315,7 @@ inline std::vector<KeyRow> key_rows() {
       {"area.budget_mm2", kTerrain, {"energy.profile=n45"}, {"30"}},
       {"area.fit", kTerrain, {"energy.profile=n45", "area.budget_mm2=300", "area.fit=resources"}, {"all", "refuse"}},
       {"area.fit", kTerrain, {"energy.profile=n45", "area.budget_mm2=12"}, {"best"}},
+      {"area.aim", kTerrain, {"energy.profile=n45", "area.budget_mm2=12", "area.fit=best"}},
       {"area.link_mm", kTerrain, {"energy.profile=n45"}, {"9"}},
       {"scene.objects",
        kOwn,

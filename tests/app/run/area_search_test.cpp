@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -17,6 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 using testing::HasSubstr;
+using testing::Not;
 
 constexpr const char* kMachine =
     "scene: {builtin: terrain, triangles: 2000}\n"
@@ -113,11 +115,49 @@ TEST_F(AreaSearchRun, TakesTheFastestSplitWithinTheBudget) {
   EXPECT_EQ(alone["energy"]["joules"], r["energy"]["joules"]);
   EXPECT_EQ(alone["digest"], r["digest"]);
   EXPECT_FALSE(alone["area"].contains("search"));
+  EXPECT_EQ(search["aim"], "cycles");
   // Nothing is lost by it, and the machine of area.fit: all is no faster.
   const Json all = run({"area.fit=all"});
   EXPECT_EQ(all["digest"], r["digest"]);
   EXPECT_EQ(all["engine"]["cycles"], trials[0]["cycles"]);
   EXPECT_GE(all["engine"]["cycles"].get<double>(), least);
+}
+
+/// Of some trials the one with the least of a number.
+const Json& least(const Json& trials, const char* key) {
+  return *std::min_element(trials.begin(), trials.end(), [&](const Json& a, const Json& b) { return a[key] < b[key]; });
+}
+
+TEST_F(AreaSearchRun, AimsAtCyclesOrJoules) {
+  const Json fast = run(), thrifty = run({"area.aim=joules"});
+  const Json &search = thrifty["area"]["search"], &trials = search["trials"];
+  EXPECT_EQ(search["aim"], "joules");
+  EXPECT_EQ(search["ended"], "no neighbour of the chosen split takes fewer joules");
+  const Json& chosen = least(trials, "nj_per_ray");
+  EXPECT_EQ(chosen["chosen"], true);
+  EXPECT_EQ(thrifty["energy"]["nj_per_ray"], chosen["nj_per_ray"]) << "the run is that of the chosen machine";
+  EXPECT_EQ(thrifty["config"]["topology"]["resources"], chosen["resources"]);
+  const double times = trials[0]["nj_per_ray"].get<double>() / chosen["nj_per_ray"].get<double>();
+  EXPECT_GT(times, 1.01);
+  EXPECT_THAT(said_, HasSubstr(fmt::format("{:.3g} times the rays a joule of the first", times)));
+  // It is another machine than the fastest one, takes fewer joules than it, and more cycles.
+  EXPECT_EQ(fast["energy"]["nj_per_ray"], least(fast["area"]["search"]["trials"], "cycles")["nj_per_ray"]);
+  EXPECT_LT(thrifty["energy"]["nj_per_ray"], fast["energy"]["nj_per_ray"]);
+  EXPECT_GT(thrifty["engine"]["cycles"], fast["engine"]["cycles"]);
+  EXPECT_EQ(thrifty["digest"], fast["digest"]);
+  EXPECT_EQ(trials[0], fast["area"]["search"]["trials"][0]) << "both begin with the machine of fit: all";
+  // A run of this machine alone ignores nothing and takes the same joules.
+  program_.write("chosen.json", thrifty["config"].dump());
+  const Outcome alone = program_.run({"run", "chosen.json", "--out", "alone", "--quiet"});
+  ASSERT_EQ(alone.status, 0) << alone.err;
+  EXPECT_THAT(alone.err, Not(HasSubstr("area.aim")));
+  EXPECT_EQ(Json::parse(program_.read("alone/report.json"))["energy"]["joules"], thrifty["energy"]["joules"]);
+}
+
+TEST_F(AreaSearchRun, AnAimWithoutASearchIsIgnored) {
+  const Outcome outcome = start({"run", "--out", "out"}, {"area.fit=all", "area.aim=joules"});
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_THAT(outcome.err, HasSubstr("area.aim (area.fit is not best)"));
 }
 
 TEST_F(AreaSearchRun, IsTheSameAgain) {
@@ -132,23 +172,26 @@ TEST_F(AreaSearchRun, IsTheSameAgain) {
 }
 
 TEST_F(AreaSearchRun, LargeFramesAreSampled) {
-  const Json r = run({"image.width=512", "image.height=400", "image.max_depth=1"});
+  const Json r = run({"image.width=512", "image.height=400", "image.max_depth=1", "area.aim=joules"});
   EXPECT_NEAR(r["area"]["search"]["fraction"].get<double>(), 200000.0 / (512 * 400), 1e-9);
   EXPECT_FALSE(r.contains("sampled")) << "the run itself is whole";
   std::vector<double> foretold, of_frame;
   for (const Json& trial : r["area"]["search"]["trials"]) {
-    foretold.push_back(trial["cycles"]);
-    if (trial.contains("frame_cycles")) of_frame.push_back(trial["frame_cycles"]);
+    foretold.push_back(trial["nj_per_ray"]);
+    if (trial.contains("frame_nj_per_ray")) of_frame.push_back(trial["frame_nj_per_ray"]);
   }
   std::sort(foretold.begin(), foretold.end());
   std::sort(of_frame.begin(), of_frame.end());
   ASSERT_EQ(of_frame.size(), 2u) << "the two best are simulated whole";
-  EXPECT_EQ(r["engine"]["cycles"], of_frame[0]) << "and the faster one is taken";
+  EXPECT_EQ(r["energy"]["nj_per_ray"], of_frame[0]) << "and the better one is taken";
   for (const Json& trial : r["area"]["search"]["trials"]) {
-    EXPECT_EQ(trial.contains("frame_cycles"), trial["cycles"].get<double>() <= foretold[1]);
+    EXPECT_EQ(trial.contains("frame_nj_per_ray"), trial["nj_per_ray"].get<double>() <= foretold[1]);
+    EXPECT_EQ(trial.contains("frame_cycles"), trial.contains("frame_nj_per_ray"));
     if (trial["chosen"] == true) {
-      EXPECT_EQ(trial["frame_cycles"], of_frame[0]);
-      EXPECT_NEAR(trial["cycles"].get<double>() / of_frame[0], 1, 0.1);
+      EXPECT_EQ(trial["frame_nj_per_ray"], of_frame[0]);
+      EXPECT_EQ(trial["frame_cycles"], r["engine"]["cycles"]);
+      EXPECT_NEAR(trial["cycles"].get<double>() / trial["frame_cycles"].get<double>(), 1, 0.1);
+      EXPECT_NEAR(trial["nj_per_ray"].get<double>() / of_frame[0], 1, 0.1);
     }
   }
   EXPECT_THAT(program_.read("out/report.html"), HasSubstr("frame cycles"));
@@ -186,6 +229,8 @@ TEST_F(AreaSearchRun, EachPointOfASweepGetsItsBest) {
 TEST_F(AreaSearchRun, WhatHasNoMeaningIsRefusedFirst) {
   EXPECT_THAT(refused({"area.budget_mm2=2"}), HasSubstr("no number of resources makes a machine of at most 2 mm2"));
   EXPECT_THAT(refused({"energy.profile=none"}), HasSubstr("an area needs a process"));
+  EXPECT_THAT(refused({"energy.profile=none", "area.aim=joules"}), HasSubstr("expected energy.profile: n45 or n7"));
+  EXPECT_THAT(refused({"area.aim=joule"}), HasSubstr("joules"));
   EXPECT_THAT(refused({"engine.kind=native", "energy.profile=none"}), HasSubstr("area.fit"));
   EXPECT_THAT(refused({"workload={traffic: {packets: 100}}"}), HasSubstr("splits are compared by rays"));
   EXPECT_THAT(refused({}, {"accuracy"}), HasSubstr("only carousel run, sweep and versus search for a split"));
@@ -198,7 +243,8 @@ TEST_F(AreaSearchRun, WhatHasNoMeaningIsRefusedFirst) {
 }
 
 TEST_F(AreaSearchRun, BothMachinesOfVersusGetTheirBest) {
-  const Outcome outcome = start({"versus", "--seeds", "1", "--no-search", "--out", "v", "--quiet"});
+  const Outcome outcome =
+      start({"versus", "--seeds", "1", "--no-search", "--out", "v", "--quiet"}, {"area.aim=joules"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const Json versus = Json::parse(program_.read("v/versus.json"));
   for (const auto& [search, index] : {std::pair{"search", 0}, std::pair{"twin_search", 2}}) {
@@ -208,6 +254,8 @@ TEST_F(AreaSearchRun, BothMachinesOfVersusGetTheirBest) {
     ASSERT_NE(chosen, trials.end());
     EXPECT_EQ((*chosen)["resources"], versus["machines"][index]["resources"]) << search;
     EXPECT_EQ((*chosen)["cycles"], versus["runs"][index]["cycles"]) << search;
+    EXPECT_EQ(versus[search]["aim"], "joules");
+    EXPECT_EQ(&*chosen, &least(trials, "nj_per_ray"));
   }
   EXPECT_LE(versus["machines"][2]["mm2"].get<double>(), versus["machines"][0]["mm2"].get<double>());
   EXPECT_THAT(program_.read("v/versus.html"), HasSubstr("Of the twin at equal area"));
