@@ -2,6 +2,7 @@
 import dataclasses
 import itertools
 import json
+import math
 import pathlib
 import sys
 
@@ -44,6 +45,9 @@ CAMERA, BOUNCES, SHADOW, SHUFFLED = "camera", "bounces", "shadow", "shuffled"
 # Kinds of rays: pictures, and lists of the rays of the picture with bounces: its shadow rays in their order, and its
 # bounces in none.
 LISTS = {SHADOW: ("shadow", False), SHUFFLED: ("bounce", True)}
+RAYS_A_PIXEL = {CAMERA: 1.6, SHADOW: 0.88, BOUNCES: 2.7, SHUFFLED: 0.85}  # the least of the map's scenes
+FILL = 20  # the rays of a row are at least so many times the slots of its best machines
+NEAR = 0.1  # on larger pictures kinds compete that are so near to the best, and a ring so near or ahead has all seeds
 
 
 @dataclasses.dataclass(frozen=True)
@@ -52,10 +56,16 @@ class Grid:
     channels: tuple
     frames: tuple  # scenes, each with a kind of rays
     seeds: tuple
-    camera: tuple  # width and height of the pictures
+    camera: tuple  # width and height of the least pictures
     bounces: tuple
     searched: tuple  # frames with a number of triangles, on which splits are searched: on the first with all slots
     marker: str = ""  # place of its table in the page; printed without one
+
+    def size(self, rays, slots):
+        """Width and height of a picture whose rays fill so many slots."""
+        width, height = self.camera if rays == CAMERA else self.bounces
+        scale = max(1, math.sqrt(FILL * slots / (RAYS_A_PIXEL[rays] * width * height)))
+        return tuple(8 * math.ceil(side * scale / 8) for side in (width, height))
 
 
 ALL_FRAMES = tuple(itertools.product(("terrain", "spheres"), (CAMERA, SHADOW, BOUNCES, SHUFFLED)))
@@ -79,9 +89,8 @@ OTHERS = [
     ("terrain", 60_000, 2, BOUNCES, ["image.max_depth=8"])]
 
 
-def picture(grid, scene, triangles, rays, seed):
+def picture(width, height, scene, triangles, rays, seed):
     """The keys of a picture; a scene of a file has as many triangles as it has."""
-    width, height = grid.camera if rays == CAMERA else grid.bounces
     keys = [f"scene={{file: {scene}}}"] if is_file(scene) else [f"scene.builtin={scene}", f"scene.triangles={triangles}"]
     return [*keys, f"image.width={width}", f"image.height={height}", "image.samples=1",
             f"image.max_depth={1 if rays == CAMERA else 4}", f"image.seed={seed}"]
@@ -91,9 +100,9 @@ def is_file(scene):
     return "." in scene
 
 
-def the_run(grid, kind, machine, scene, triangles, channels, rays, seed, more=()):
-    keys = picture(grid, scene, triangles, rays, seed)
-    width, height = grid.camera if rays == CAMERA else grid.bounces
+def the_run(grid, kind, machine, scene, triangles, channels, rays, seed, more=(), slots=0):
+    width, height = grid.size(rays, slots)
+    keys = picture(width, height, scene, triangles, rays, seed)
     run = {"config": KINDS[kind].config, "triangles": triangles, "rays": width * height * (1 if rays == CAMERA else 3)}
     if rays in LISTS:
         part, shuffled = LISTS[rays]

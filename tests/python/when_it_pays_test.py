@@ -1,6 +1,7 @@
 """bench/studies/when_it_pays with a program that only seems to simulate: what is killed goes on, shards share the runs and
 end in time, each row takes the best of the splits that were found, and machines that differ in a hit are told. And what the
 map says of a place."""
+import itertools
 import json
 import math
 import os
@@ -128,6 +129,35 @@ class WhenItPays(unittest.TestCase):
             self.assertTrue(all(any(one in ran for one in some) for some in best), "as good ones are several at times")
             self.assertTrue(all(any(one in some for some in best) for one in ran))
 
+    def test_pictures_fill_the_slots(self):
+        self.whole()
+        rows = {}
+        for one in self.kept(self.path / "out"):
+            keys = dict(key.split("=", 1) for key in one["run"]["keys"])
+            if "list" in one["run"] and keys["area.fit"] != "best":
+                _, _, rays, size, seed = one["run"]["list"]["name"].split("-")
+                slots = int(keys["rays.slots_per_resource"]) * int(keys["topology.resources"])
+                machine = {"ring": "ring" in one["run"]["config"], "slots": slots, "cycles": one["cycles"], "nj_per_ray": one["nj_per_ray"]}
+                rows.setdefault((rays, keys["memory.dram.channels"]), {}).setdefault(size, {}).setdefault(int(seed), []).append(machine)
+        larger = 0
+        for (rays, _), sizes in rows.items():
+            trials, least, most = sizes.pop("96x64")[1], 0, 0
+            for ring, what in itertools.product((True, False), ("cycles", "nj_per_ray")):
+                some = [one for one in trials if one["ring"] == ring]
+                best = [one["slots"] for one in some if one[what] == min(other[what] for other in some)]
+                least, most = max(least, min(best)), max(most, max(best))  # of as good ones any
+            a_pixel = {"shadow": 0.88, "shuffled": 0.85}[rays]
+            self.assertLessEqual(len(sizes), 1)
+            self.assertTrue(sizes or 96 * 64 * a_pixel >= 20 * least)
+            for size, seeds in sizes.items():
+                width, height = map(int, size.split("x"))
+                self.assertGreaterEqual(width * height * a_pixel, 20 * least)
+                self.assertLess((width - 8) * (height - 8) * a_pixel, 20 * most)
+                self.assertEqual({one["ring"] for one in seeds[1]}, {True, False})
+                self.assertIn(len(seeds.get(2, [])), (0, 2), "where they are near, a ring and a conventional machine")
+                larger += 1
+        self.assertGreater(larger, 0)
+
     def test_a_killed_study_goes_on(self):
         whole = self.whole()
         all_runs = self.calls()
@@ -202,17 +232,23 @@ class WhenItPays(unittest.TestCase):
         self.assertEqual(self.calls(), [])
 
     def test_rows_have_the_seeds_that_are_kept(self):
-        self.whole()
+        def seeds_of(table):
+            return {tuple(cell.strip() for cell in line.split("|")[2:6:2]): line.split("|")[5].strip() for line in table.splitlines()[2:]}
+        whole = self.whole()
         self.calls()
-        gone = next(file for file in (self.path / "out").glob("*.json") if {"image.seed=2", "image.max_depth=1", "memory.dram.channels=16"}
-                    <= set(json.loads(file.read_text())["run"]["keys"]))
-        gone.unlink()
+        seeds = seeds_of(whole.stdout)
+        rays, channels = next(row for row, number in seeds.items() if number == "2")
+        of_row = {"camera": lambda run: "image.max_depth=1" in run["keys"], "bounces": lambda run: "image.max_depth=4" in run["keys"]}.get(
+            rays, lambda run: f"-{rays}-" in run.get("list", {}).get("name", ""))
+        for file in (self.path / "out").glob("*.json"):
+            run = json.loads(file.read_text())["run"]
+            if of_row(run) and f"memory.dram.channels={channels}" in run["keys"] and (
+                    "image.seed=2" in run["keys"] or run.get("list", {}).get("name", "").endswith("-2")):
+                file.unlink()
         done = self.study("--kept")
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertEqual(self.calls(), [])
-        seeds = {tuple(cell.strip() for cell in line.split("|")[2:6:2]): line.split("|")[5].strip() for line in done.stdout.splitlines()[2:]}
-        self.assertEqual(seeds.pop(("camera", "16")), "1")
-        self.assertEqual(set(seeds.values()), {"2"})
+        self.assertEqual(seeds_of(done.stdout), seeds | {(rays, channels): "1"})
         for file in (self.path / "out").glob("*.json"):
             file.unlink()
         self.assertIn("first searches are missing", self.study("--kept").stderr)
@@ -242,7 +278,7 @@ class WhenItPays(unittest.TestCase):
         self.whole()
         for kind, name in (("shadow", "shadow"), ("bounce", "shuffled")):
             files = sorted((self.path / "out/rays/abc12345").glob(f"*-{name}-*.csv"))
-            self.assertEqual(len(files), 2, "a list for each seed")
+            self.assertEqual({file.stem.rsplit("-", 1)[1] for file in files}, {"1", "2"}, "a list for each seed")
             rows = [line.split(",") for line in files[0].read_text().splitlines()[1:]]
             self.assertEqual({row[1] for row in rows}, {kind})
             self.assertEqual([int(row[0]) for row in rows], list(range(20)))
