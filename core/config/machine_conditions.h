@@ -90,8 +90,7 @@ inline constexpr Condition kLinkTime{
     kCycle.otherwise};
 inline constexpr Condition kPicture{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRays; },
                                     "the workload has no picture"};
-inline constexpr Condition kFlags{[](const C& c, const S&) { return c.workload.kind == WorkloadKind::kRays; },
-                                  "rays of a file or of a plugin carry no such flags"};
+inline constexpr Condition kFlags{kPicture.holds, "rays of a file or of a plugin carry no such flags"};
 inline constexpr Condition kDrawn{[](const C& c, const S&) { return c.workload.kind != WorkloadKind::kRaysFrom; },
                                   "rays of a file are not drawn at random"};
 inline constexpr Condition kLatency{
