@@ -19,6 +19,8 @@ RUNS = {
               "memory.dram.preset=gddr6_14", "verify=reference"] + ENERGY, ["--heat", "linear"]),
     "larger-frame": (["scene.builtin=terrain", "scene.triangles=2000", "engine.kind=cycle", "image.width=96", "image.height=64",
                       "image.samples=1", "image.max_depth=2", "rays.slots_per_resource=32", "topology.resources=4"], []),
+    "untried": (["scene.builtin=terrain", "scene.triangles=2000", "engine.kind=cycle", "image.width=96", "image.height=64", "image.samples=1",
+                 "rays.slots_per_resource=32", "topology.resources=4", "shading.workers=200"], []),
     "few-rays": (CORNELL, []),
     "frames": (TERRAIN + ["frames.count=3", "frames.step=4", "memory.dram_latency_cycles=20", "memory.dram_bytes_per_cycle=1024",
                           "frames.builder.bytes_per_cycle=4096", "frames.builder.boxes_per_cycle=1024",
