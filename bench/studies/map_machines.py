@@ -47,7 +47,7 @@ CAMERA, BOUNCES, SHADOW, SHUFFLED = "camera", "bounces", "shadow", "shuffled"
 LISTS = {SHADOW: ("shadow", False), SHUFFLED: ("bounce", True)}
 RAYS_A_PIXEL = {CAMERA: 1.6, SHADOW: 0.88, BOUNCES: 2.7, SHUFFLED: 0.85}  # the least of the map's scenes
 FILL = 20  # the rays of a row are at least so many times the slots of its best machines
-NEAR = 0.1  # on larger pictures kinds compete that are so near to the best, and a ring so near or ahead has all seeds
+NEAR = 0.1  # on larger pictures kinds compete that are so near to the best
 
 
 @dataclasses.dataclass(frozen=True)
