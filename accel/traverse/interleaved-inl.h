@@ -71,7 +71,8 @@ HWY_INLINE bool walk_on(const Accel& accel, Walker<Slab>& walker, bool any, Node
   }
 }
 
-/// The walkers of a thread, whose stacks are large.
+/// The walkers of a thread, some 200 KB. take_turns() has them while it runs, and nothing that it calls may trace rays
+/// by it again.
 template <class Slab>
 Walker<Slab>* walkers_of_thread() {
   static thread_local const std::unique_ptr<Walker<Slab>[]> walkers(new Walker<Slab>[kWalkersInTurn]);

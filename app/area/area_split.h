@@ -23,9 +23,9 @@ struct AreaSplit {
   auto operator<=>(const AreaSplit&) const = default;
 };
 
-/// The machine of a split of area.budget_mm2 that has the most resources, area.fit: refuse and no aim. What all
-/// resources share grows with them. None if no number of resources is within the budget, if a part would be out of its
-/// range, or if a part is as large as a step nearer to the configuration.
+/// Returns the machine of a split with as many resources as area.budget_mm2 holds. Its area.fit is refuse, and it has
+/// no aim. What all resources share grows with them. None if no number of resources is within the budget, if a part
+/// would be out of its range, or if a part is as large as a step nearer to the configuration.
 std::optional<Config> machine_of(const LocatedConfig& given, const SceneFacts& scene, const AreaSplit& split);
 
 }  // namespace carousel::app

@@ -86,7 +86,7 @@ class Search {
 
   double cost_of(std::size_t trial) const { return out_.cost(out_.trials[trial]); }
 
-  /// What the best split has least of, as foretold; none if there is no such machine.
+  /// Returns the foretold cycles or joules of a split, of which the best has least; none if there is no such machine.
   std::optional<double> cost_of(const AreaSplit& split) {
     if (const auto known = trial_of_.find(split); known != trial_of_.end()) return cost_of(known->second);
     if (impossible_.contains(split)) return std::nullopt;

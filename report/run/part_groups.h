@@ -9,7 +9,8 @@
 
 namespace carousel::report {
 
-/// What classes of parts have in common that a verdict does not tell apart. Those of units (kUnitKinds) are testers.
+/// A group for each class of parts: where a verdict cannot tell classes of one group apart, it names the group. Units
+/// (kUnitKinds) are testers.
 inline constexpr auto kPartGroups = std::to_array<std::pair<std::string_view, std::string_view>>({
     {"memory_bandwidth", "memory"},
     {"memory_latency", "memory"},

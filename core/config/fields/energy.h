@@ -75,8 +75,8 @@ void describe(V& v, AreaConfig& c) {
        "refuse a larger machine is an error.")
       .only(EngineKind::kCycle, "search for the best split", AreaConfig::Fit::kBest);
   v.choice("aim", c.aim,
-           "What the best split has least of: cycles of the frame, or joules of a completed ray, those of "
-           "energy.nj_per_ray.");
+           "The best split takes the fewest cycles for the frame, or the fewest joules a completed ray "
+           "(energy.nj_per_ray).");
   v.field_or_auto(
       "link_mm", c.link_mm, RealRange{0, 1000}, "mm",
       "The length of a link between neighbours. With auto it is the side of a square of a resource's area.");

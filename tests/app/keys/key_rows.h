@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/costs/cost_table.h"
+#include "tests/app/keys/cost_key_rows.h"
 #include "tests/app/keys/memory_key_rows.h"
 #include "tests/app/keys/network_key_rows.h"
 #include "tests/app/keys/tester_key_rows.h"
@@ -311,12 +311,6 @@ inline std::vector<KeyRow> key_rows() {
       {"sampling.fraction", kTerrain, {"image.width=48", "image.height=32"}, {"0.5"}},
       {"sampling.strata", kTerrain, {"image.width=48", "image.height=32", "sampling.fraction=0.5"}, {"4"}},
       {"sampling.seed", kTerrain, {"image.width=48", "image.height=32", "sampling.fraction=0.5"}, {"2"}},
-      {"energy.profile", kTerrain},
-      {"area.budget_mm2", kTerrain, {"energy.profile=n45"}, {"30"}},
-      {"area.fit", kTerrain, {"energy.profile=n45", "area.budget_mm2=300", "area.fit=resources"}, {"all", "refuse"}},
-      {"area.fit", kTerrain, {"energy.profile=n45", "area.budget_mm2=12"}, {"best"}},
-      {"area.aim", kTerrain, {"energy.profile=n45", "area.budget_mm2=12", "area.fit=best"}},
-      {"area.link_mm", kTerrain, {"energy.profile=n45"}, {"9"}},
       {"scene.objects",
        kOwn,
        {},
@@ -366,11 +360,8 @@ inline std::vector<KeyRow> key_rows() {
       {"workload.traffic.reply_bytes", kTraffic, {kStopsRing}, {"64"}},
       {"workload.traffic.serve_cycles", kTraffic, {kStopsRing, "workload.traffic.reply_bytes=32"}, {"9"}},
   };
-  for (const std::vector<KeyRow>& more : {memory_key_rows(), network_key_rows(), tester_key_rows()})
+  for (const std::vector<KeyRow>& more : {memory_key_rows(), network_key_rows(), tester_key_rows(), cost_key_rows()})
     rows.insert(rows.end(), more.begin(), more.end());
-  for (const CostRow& row : kCostTable)
-    rows.push_back(
-        {std::string(row.section) + "." + std::string(row.key), kTerrain, {"energy.profile=n45"}, {"12345"}});
   return rows;
 }
 

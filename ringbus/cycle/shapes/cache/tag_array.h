@@ -24,7 +24,7 @@ class TagArray {
 
   /// The lines that are there, those of shapes first.
   std::vector<std::uint64_t> lines() const;
-  /// Those that were here last: first those that were replaced, as many as there is room for at most, then lines().
+  /// Returns the lines that were replaced last, as many as there is room for at most, and after them lines().
   std::vector<std::uint64_t> recent() const;
   std::uint64_t room() const { return ways_.room() + (ray_ways_ ? ray_ways_->room() : 0); }  ///< for lines
   /// Marks all lines as not written, and returns those that were, in the order of their addresses.
