@@ -199,8 +199,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
              run,
              {job.first_rays(), slots, ringbus::part_between(*run.cycle, run.rays_completed, slots), found.least_paths},
              true)});
-  spdlog::debug("search: simulated {} rays, {:.2f} times those of the run", found.simulated,
-                report::ratio(found.simulated, run.rays_completed));
+  spdlog::debug("search: simulated {} rays, which took {:.2f} times the run", found.simulated, found.taken);
   if (found.whole)
     spdlog::debug("search: the pilot is the whole frame, {} rays", found.rays);
   else
@@ -217,8 +216,8 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          .rays = found.rays};
   for (const ringbus::Untried& one : found.untried) out.untried.push_back({one.name, one.action, one.why});
   for (const ringbus::Gain& gain : found.gains)
-    out.gains.push_back(
-        {gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high, gain.together});
+    out.gains.push_back({gain.name, gain.action, gain.sets, gain.rays_per_kilocycle, gain.gain, gain.low, gain.high,
+                         gain.together, gain.frame});
   for (const ringbus::GainPhase& phase : found.phases)
     out.phases.push_back({phase.begin, phase.end, phase.time, phase.name, phase.action, phase.gain});
   report::Bottleneck judged = report::judge_gains(std::move(out));
@@ -229,7 +228,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                                    [&](const report::BottleneckGain& gain) { return gain.name == judged.limits; });
   std::vector<ringbus::WarmGain> others;
   for (const report::BottleneckGain& gain : judged.gains) {
-    if (ringbus::gains_of_cold_caches(gain.name)) continue;
+    if (ringbus::gains_of_cold_caches(gain.name) || gain.together > 1) continue;
     others.push_back({gain.gain, gain.low});
     if (judged.cold_caches->instead.empty() && gain.together == 1 && worth_naming(gain.gain, gain.low) &&
         gain.high >= memory->gain)

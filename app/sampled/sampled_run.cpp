@@ -9,7 +9,7 @@
 #include "report/text/number_text.h"
 #include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/cycle/shapes/shape_memory.h"
-#include "ringbus/verdict/sample_estimate.h"
+#include "ringbus/sampling/sample_estimate.h"
 
 namespace carousel::app {
 

@@ -11,4 +11,10 @@ constexpr bool worth_naming(double gain, double low) {
   return gain >= kWorthIt && low > 0;
 }
 
+/// By which gains are compared for a verdict: the lower end of the interval counts for a third, since the greatest of
+/// several uncertain gains is likely to be one that was overestimated.
+constexpr double likely_gain(double gain, double low) {
+  return (2 * gain + low) / 3;
+}
+
 }  // namespace carousel

@@ -41,18 +41,27 @@ Html gains_section(const Json& report, const Json& schema) {
   if (gains && !gains->empty()) {
     Table table{"gains",
                 "Gain of relaxing one class of parts",
-                {{"class of parts"}, {"gain"}, {"low"}, {"high"}, {"relaxed together"}, {"change"}, {"to try it"}}};
+                {{"class of parts"},
+                 {"gain"},
+                 {"low"},
+                 {"high"},
+                 {"relaxed together"},
+                 {"of the frame"},
+                 {"change"},
+                 {"to try it"}}};
     for (const Json& gain : *gains) {
+      const Json* frame = find(gain, "frame");  // absent in older reports
       std::string sets;
       for (const Json& set : gain["sets"]) sets += (sets.empty() ? "--set " : " --set ") + set.get<std::string>();
       table.rows.push_back({cell(words(text_at(gain, "name"))), cell(gain["gain"], "fraction"),
                             cell(gain["low"], "fraction"), cell(gain["high"], "fraction"),
-                            cell(gain["together"], "classes"), cell(text_at(gain, "action")), cell(sets)});
+                            cell(gain["together"], "classes"), frame ? cell(*frame, "fraction") : cell(""),
+                            cell(text_at(gain, "action")), cell(sets)});
     }
     out += markup(
-        "<p>The classes of parts were relaxed, alone or with as many others as the table says, and the machine "
-        "simulated "
-        "again; low and high are the ends of the interval of 95 % of confidence.</p>\n");
+        "<p>The classes of parts were relaxed, alone or with as many others as the table says. The machine simulated a "
+        "pilot again, or as much of the frame from its start as the table says. Low and high are the ends of the "
+        "interval of 95 % of confidence.</p>\n");
     out += Figure{.id = "fig-gains",
                   .kind = "intervals",
                   .tables = table.id,

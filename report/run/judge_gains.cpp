@@ -91,7 +91,9 @@ std::string gain_text(const BottleneckGain& gain) {
 Bottleneck judge_gains(Bottleneck found) {
   const BottleneckGain* named = nullptr;
   for (const BottleneckGain& gain : found.gains)
-    if (named == nullptr && gain.together == 1 && worth_naming(gain.gain, gain.low)) named = &gain;
+    if (gain.together == 1 && worth_naming(gain.gain, gain.low) &&
+        (named == nullptr || likely_gain(gain.gain, gain.low) > likely_gain(named->gain, named->low)))
+      named = &gain;
   if (found.cold_caches) {
     const auto instead = std::find_if(found.gains.begin(), found.gains.end(), [&](const BottleneckGain& gain) {
       return gain.name == found.cold_caches->instead;

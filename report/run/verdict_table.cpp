@@ -18,7 +18,11 @@ std::string verdict_table(const Bottleneck& found) {
     out += fmt::format("{:<13}{}\n", out.empty() ? "bottleneck" : "", found.verdict.substr(begin, end - begin));
     begin = end + 2;
   }
-  if (found.rays > 0 && !found.whole_frame)
+  const auto named = std::find_if(found.gains.begin(), found.gains.end(),
+                                  [&](const BottleneckGain& gain) { return gain.name == found.limits; });
+  if (named != found.gains.end() && named->frame > 0)
+    out += fmt::format("{:<13}by {} of the frame, from its start\n", "", percent(named->frame));
+  else if (found.rays > 0 && !found.whole_frame)
     out += fmt::format("{:<13}by {} of the frame's rays, which foretell its cycles to {:+.1f} %\n", "",
                        grouped(found.rays), 100 * found.deviation);
   if (found.phases.size() < 2) return out;

@@ -40,6 +40,7 @@ struct BottleneckGain {
   std::vector<std::string> sets;
   double rays_per_kilocycle = 0, gain = 0, low = 0, high = 0;
   std::uint64_t together = 1;
+  double frame = 0;
 };
 
 template <class V>
@@ -56,6 +57,9 @@ void describe(V& v, const BottleneckGain& r) {
   v.field("together", r.together, "classes",
           "classes that were relaxed together in the simulation: if more than 1, the gain is that of all of them; 0: "
           "none was simulated, as the run's ledger bounds the gain below 5 %");
+  v.field(
+      "frame", r.frame, "fraction",
+      "part of the run's cycles, from its start, for which the relaxed machine was simulated; 0: for the pilot alone");
 }
 
 /// A class of parts that no configuration may relax so.
@@ -111,7 +115,7 @@ void describe(V& v, const ColdCaches& r) {
           "would gain most without first reads; empty if none is");
 }
 
-/// A stretch of the first pilot in which one class of parts gains most.
+/// A stretch of the pilot in which one class of parts gains most.
 struct BottleneckPhase {
   double begin = 0, end = 0, time = 0;
   std::string limits, action;

@@ -41,8 +41,8 @@ class CycleRun {
     const ClockRatio to_fastest = machine_.network().clocks().to_fastest(0);
     const auto keep_running = [&](Cycle reached) {
       const Cycle at = to_fastest.before(reached);
-      stopped = options_.stop.stop_requested();
-      note_progress(at);
+      stopped = options_.stop.stop_requested() || machine_.shading().completed() >= options_.enough;
+      note_progress(at, stopped);
       if (machine_.recorder() != nullptr) machine_.recorder()->limit();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
@@ -271,9 +271,10 @@ class CycleRun {
     return sum;
   }
 
-  void note_progress(Cycle at) {
+  /// `last`: the run ends here.
+  void note_progress(Cycle at, bool last) {
     const ShadingAgent& shading = machine_.shading();
-    const bool begun = shading.all_begun() && !all_begun_, wanted = log_.wants(shading.completed());
+    const bool begun = shading.all_begun() && !all_begun_, wanted = last || log_.wants(shading.completed());
     if (!begun && !wanted) return;
     ProgressSample sample{at, shading.completed(), {}, machine_.memory().counts().lines, first_reads()};
     for (const ClassUse& use : uses()) sample.busy.push_back(use.busy);

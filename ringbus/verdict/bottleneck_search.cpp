@@ -11,6 +11,7 @@
 #include "core/numeric/worth_naming.h"
 #include "ringbus/verdict/cold_caches.h"
 #include "ringbus/verdict/foretell.h"
+#include "ringbus/verdict/frame_beginning.h"
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
@@ -44,16 +45,15 @@ class Search {
   Bottleneck search() {
     std::vector<std::vector<std::size_t>> groups = first_groups();
     const std::size_t first = groups.size() + 1;
-    out_.paths = first_paths(config_, run_.paths, budget_, first);
+    out_.paths = first_paths(config_, run_.paths, budget_, first, stops_ ? kWanted : kScreening);
     if (budget_.of(out_.paths, first) > kAtMost) {
       out_.least_paths = least_frame(config_, run_, first);
       out_.gains.clear();
       return out_;
     }
-    pilots_.begin("first pilot", first, out_.paths);
+    pilots_.begin("pilot", first, out_.paths);
     screen(groups);
     note_phases();
-    seeds_ = {out_.paths, draw_, base_.cycle ? static_cast<double>(base_.cycle->cycles) : 0};
     while (out_.complete && !told() && look_again()) continue;
     if (out_.complete) judge();
     if (out_.complete) find_noise();
@@ -78,9 +78,9 @@ class Search {
 
   std::uint64_t frame() const { return run_.result.rays_completed; }
 
-  /// So many simulations of the present pilot keep within this part of the run's rays.
+  /// So many simulations of the pilot keep within this part of the run's rays.
   bool affords(std::size_t simulations, double part) const {
-    return budget_.of(out_.paths, simulations) <= budget_.left(part, out_.simulated);
+    return pilots_.taken() + budget_.of(out_.paths, simulations) <= part;
   }
 
   /// The most that a class may gain by the run's ledger, which is not that of a machine in which a resource stops.
@@ -93,6 +93,7 @@ class Search {
     std::vector<RunResult> results = pilots_.simulate(machines);
     out_.complete &= pilots_.complete();
     out_.simulated = pilots_.simulated_rays();
+    out_.taken = pilots_.taken();
     return results;
   }
 
@@ -115,10 +116,10 @@ class Search {
   /// little beside the simulations that are to follow, and goes on with the one that is most like it.
   void simulate_base(std::size_t others) {
     if (base_is_the_run()) return;
-    const std::uint64_t draws = cold_ ? 1 : 4;  // no part of a cold frame is like it
+    constexpr std::uint64_t kDraws = 4;
     constexpr double kLittle = 0.25;
     std::uint64_t taken = 0;
-    for (std::uint64_t draw = 0; draw < draws; ++draw) {
+    for (std::uint64_t draw = 0; draw < kDraws; ++draw) {
       pilots_.take(draw);
       RunResult drawn = simulate({&config_}).front();
       if (!out_.complete) return;
@@ -127,21 +128,19 @@ class Search {
         taken = draw;
         set_base(std::move(drawn));
       }
-      if (likeness_.off() <= kLike || budget_.of(out_.paths, draw + 2) > kLittle ||
-          budget_.of(out_.paths, others + 1) > budget_.left(kWanted, out_.simulated))
+      if (likeness_.off() <= kLike || budget_.of(out_.paths, draw + 2) > kLittle || !affords(others + 1, kScreened))
         break;
       pilots_.expect_more(1);
     }
-    draw_ = taken;
     pilots_.take(taken);
   }
 
-  /// `more_slots`: for a machine with twice the ray slots, which is full later.
+  bool more_slots(std::size_t i) const { return what_ifs_[i].name() == "ray_slots"; }
+  /// Completed rays after which the machine is full, or one with twice its ray slots.
+  std::uint64_t fill(bool more_slots = false) const { return (more_slots ? 2 : 1) * fill_rays(slots_of(config_)); }
+
   Foretelling foretelling(const RunResult& base, bool more_slots = false) const {
-    return {{&*base.cycle, base.rays_completed},
-            frame(),
-            (more_slots ? 2 : 1) * fill_rays(slots_of(config_)),
-            stops_ ? nullptr : &*run_.result.cycle};
+    return {{&*base.cycle, base.rays_completed}, frame(), fill(more_slots), stops_ ? nullptr : &*run_.result.cycle};
   }
 
   /// Simulates the pilot as configured and with each class that stands alone relaxed; then with those of each group
@@ -153,7 +152,7 @@ class Search {
       if (group.size() > 1) later.push_back(group);
     std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.size() > 1; });
     simulate_base(groups.size() + later.size());
-    double budget = kAtMost;
+    double budget = kWanted;
     for (int round = 0; out_.complete && !(groups.empty() && later.empty()); ++round) {
       std::vector<std::vector<std::size_t>> tried;
       std::deque<Config> together;
@@ -180,15 +179,14 @@ class Search {
         if (tried[k].size() > 1)
           several.emplace_back(std::move(tried[k]), gain);
         else
-          relaxed_[tried[k].front()] = {std::move(results[k]), out_.paths};
+          relaxed_[tried[k].front()] = std::move(results[k]);
       }
       // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
       // A pilot that is not like the run, and may not even tell that from nothing, tells less of each.
       std::stable_sort(several.begin(), several.end(),
                        [](const auto& a, const auto& b) { return a.second.value > b.second.value; });
       // A group that gains more than any class that was looked at alone leaves nothing to name.
-      budget = !several.empty() && several.front().second.value > greatest_alone(out_.gains) ? kAtMost : kWanted;
-      if (cold_) budget = kWithFrame - 1.05;  // the frame may follow
+      budget = !several.empty() && several.front().second.value > likely(out_.gains) ? kAtMost : kScreened;
       groups = std::exchange(later, {});
       for (const auto& [group, gain] : several)
         if (gain.value >= kEnough && (!likeness_.other_cycles || gain.low > 0)) divide(group, groups);
@@ -202,7 +200,7 @@ class Search {
     std::vector<PilotRun> runs;
     for (const auto& [i, relaxed] : relaxed_) {
       classes.push_back(i);
-      runs.push_back({&*relaxed.result.cycle, relaxed.result.rays_completed});
+      runs.push_back({&*relaxed.cycle, relaxed.rays_completed});
     }
     if (!out_.complete) return;
     for (const FramePhase& phase : frame_phases({&*base_.cycle, base_.rays_completed}, runs)) {
@@ -219,139 +217,121 @@ class Search {
     pilots_.expect_more(own.size());
   }
 
-  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0). Where a pilot gains
-  /// more than the run may, the interval lies lower by that; and where it loses what more of a part hardly does, the
-  /// interval's upper end is higher (gain_beyond()). What the whole frame gains is known.
-  void note(std::size_t i, const Estimate& gain, std::size_t together) {
+  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0), for a pilot or for
+  /// a part of the frame from its start. Where a pilot gains more than the run may, the interval lies lower by that;
+  /// and where it loses what more of a part hardly does, the interval's upper end is higher (gain_beyond()). What the
+  /// whole frame gains is known.
+  void note(std::size_t i, const Estimate& gain, std::size_t together, double part = 0) {
     const WhatIf& what = what_ifs_[i];
-    const bool known = together == 1 && out_.whole;
-    const double beyond = known || together == 0 ? 0 : gain_beyond(gain, what.name()),
+    const bool known = part >= 1 || (together == 1 && out_.whole);
+    const bool cold = cold_ && gains_of_cold_caches(what.name());  // a pilot begins with warm ones
+    const double beyond = part > 0 || known || together == 0 ? 0
+                          : cold                             ? 1
+                                                             : gain_beyond(gain, what.name()),
                  high = known ? gain.high : std::min(gain.high + beyond, most(i)), value = std::min(gain.value, high),
                  low = gain.low - (gain.value - value);
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
-    out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, low, high, together};
+    out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, low, high, together, part};
   }
 
-  /// Relaxes each of these classes with the present pilot.
-  void relax(const std::vector<std::size_t>& which) {
-    std::vector<const Config*> machines;
-    for (const std::size_t i : which) machines.push_back(&what_ifs_[i].relaxed);
-    std::vector<RunResult> results = simulate(machines);
-    if (!out_.complete) return;
-    for (std::size_t k = 0; k < which.size(); ++k) relaxed_[which[k]] = {std::move(results[k]), out_.paths};
-    estimate(which);
-  }
-
-  /// The gain of the machine with these classes relaxed, by the present pilot with what this is known to be off by.
+  /// The gain of the machine with these classes relaxed, by the pilot with what this is known to be off by.
   Estimate gain_of(const std::vector<std::size_t>& classes, const RunResult& relaxed) const {
     const auto any = [&](const auto& is) { return std::any_of(classes.begin(), classes.end(), is); };
-    const bool slots = any([&](std::size_t i) { return what_ifs_[i].name() == "ray_slots"; }),
+    const bool slots = any([&](std::size_t i) { return more_slots(i); }),
                warms = any([&](std::size_t i) { return what_ifs_[i].part.how.keeps_shapes; });
     // A pilot that was taken since it is like the run is less so in what was not compared.
-    return foretelling(base_, slots)
-        .gain({&*relaxed.cycle, relaxed.rays_completed}, std::max(kLike, likeness_.off()), warms);
+    const Estimate gain = foretelling(base_, slots)
+                              .gain({&*relaxed.cycle, relaxed.rays_completed}, std::max(kLike, likeness_.off()), warms);
+    return slots && !out_.whole ? of_few_slots(gain) : gain;
   }
 
-  /// Notes the gains of classes that were relaxed with the present pilot, with what this is known to be off by.
-  void estimate(const std::vector<std::size_t>& classes) {
-    for (const std::size_t i : classes) note(i, gain_of({i}, relaxed_[i].result), 1);
-  }
-
-  /// Simulates a larger pilot if it may tell more, and returns true then.
+  /// Simulates the frame's beginning for classes that may be the best, if that may tell more, and returns true then.
   bool look_again() {
-    const bool of_memory = cold_ && !out_.unlike.empty();
-    std::vector<std::size_t> worth =
-        worth_a_second_look(out_.gains, of_memory || likeness_.other_cycles ? kFewest : kContenders, of_memory);
-    const std::uint64_t paths = next_paths(worth);
-    if (paths <= out_.paths && !(out_.whole && paths > 0)) return false;
-    out_.paths = paths;
-    pilots_.begin(paths < run_.paths ? "larger pilot" : "whole frame", worth.size() + 1, out_.paths);
-    simulate_base(worth.size());
-    if (out_.complete) relax_contenders(worth);
+    if (stops_ || out_.whole) return false;  // no run of the machine as configured; or its frame is known
+    std::vector<std::size_t> worth = worth_a_second_look(out_.gains, kContenders);
+    const double part = next_part(worth);
+    if (part <= 0) return false;
+    const FrameBeginning beginning = beginning_of(*run_.result.cycle, part);
+    pilots_.begin(worth.size(), beginning);
+    std::vector<const Config*> machines;
+    for (const std::size_t i : worth) machines.push_back(&what_ifs_[i].relaxed);
+    const std::vector<RunResult> results = simulate(machines);
+    if (!out_.complete) return false;
+    for (std::size_t k = 0; k < worth.size(); ++k)
+      note(worth[k],
+           part < 1 ? gain_by_beginning(*run_.result.cycle, *results[k].cycle, beginning, fill(more_slots(worth[k])),
+                                        what_ifs_[worth[k]].part.how.keeps_shapes)
+                    : whole_foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0),
+           1, part);
     return true;
   }
 
-  /// Relaxes those of these classes that may be the best: of many, the two that promise most, and then those that may
-  /// still gain more. One that gains less than another surely does is left out, and keeps the gain of an earlier pilot.
-  void relax_contenders(const std::vector<std::size_t>& classes) {
-    constexpr std::size_t kMany = 4, kFirst = 2;
-    for (bool first = true;; first = false) {
-      double surely = 0;
-      for (const std::size_t i : classes) surely = std::max(surely, out_.gains[i].low);
-      std::vector<std::size_t> missing;
-      for (const std::size_t i : classes)
-        if (relaxed_[i].paths != out_.paths && out_.gains[i].high >= surely) missing.push_back(i);
-      if (first && missing.size() >= kMany) missing.resize(kFirst);
-      // After that, the one that would be named by an earlier pilot's gain.
-      if (const auto best = named_gain(out_.gains); missing.empty() && best && out_.gains[*best].together == 1 &&
-                                                    relaxed_[*best].paths != out_.paths && affords(1, kAtMost)) {
-        missing.push_back(*best);
-        pilots_.expect_more(std::find(classes.begin(), classes.end(), *best) == classes.end());
-      }
-      if (missing.empty()) break;
-      relax(missing);
-      if (!out_.complete) return;
-    }
-    for (const std::size_t i : classes)
-      if (relaxed_[i].paths != out_.paths) pilots_.leave_out_one();
-  }
+  /// The run as its own pilot.
+  Foretelling whole_foretelling() const { return {{&*run_.result.cycle, frame()}, frame(), fill(), nullptr}; }
 
-  /// True if a larger pilot has nothing to add: it is sure which class to name, and the pilot is like the run, or the
-  /// class stands out in spite of the difference.
+  /// True if there is nothing to add: it is sure which class to name, and the pilot is like the run, or the class
+  /// stands out in spite of the difference.
   bool told() { return judge() && sure(out_.gains); }
 
-  /// Paths of a larger pilot, which is to relax these classes, or fewer of them; 0 if the budget has none.
-  std::uint64_t next_paths(std::vector<std::size_t>& worth) const {
-    if (out_.whole && budget_.left(kWithFrame, out_.simulated) < 1) return 0;
-    if (!out_.unlike.empty()) return paths_after_unlike(budget_, out_.paths, cold_, out_.simulated, worth);
-    if (worth.empty()) return 0;
-    const double most = budget_.left(kAtMost, out_.simulated);
-    const double left =
-        budget_.left(kWanted, out_.simulated) - budget_.of(seeds_.paths, static_cast<std::size_t>(noise_seeds_));
-    for (std::size_t n = worth.size(); left > 0 && n >= kFewest; --n) {
-      const std::uint64_t wanted =
-          pilot_paths(config_, run_.paths, frame(), budget_.share(left, n + 1), PilotSize::kFull);
-      if (wanted < out_.paths + out_.paths / 2 || budget_.of(wanted, n + 1) > most) continue;
-      worth.resize(n);
-      return wanted;
-    }
-    if (stops_ && named_gain(out_.gains)) return 0;  // the frame as configured is not known then
-    const std::optional<std::size_t> next = most_promising(out_.gains, [this](std::size_t i) {
-      const auto relaxed = relaxed_.find(i);
-      return relaxed != relaxed_.end() && relaxed->second.paths >= run_.paths;
-    });
-    if (!next) return 0;
-    std::erase(worth, *next);
-    worth.insert(worth.begin(), *next);
-    return paths_against_noise(budget_, out_.paths, out_.simulated, worth);
+  /// The part of the frame from its start that takes so much of the run: of its cycles and of its rays.
+  double part_within(double taken) const {
+    if (taken <= 0) return 0;
+    return std::min({1.0, taken, part_of(*run_.result.cycle, taken * static_cast<double>(frame()))});
+  }
+
+  /// The part of the frame that is to be simulated for these classes, or for fewer of them; 0 if the budget has none
+  /// that tells more than is known. It is for all that may be the best if that keeps within what a search is to take.
+  /// Beyond that it is for the two most promising if one of them may be named wrongly, and as large as possible for one
+  /// alone if none is to be named.
+  double next_part(std::vector<std::size_t>& worth) const {
+    constexpr double kMore = 1.5, kFills = 3;
+    const auto noise = budget_.of(out_.paths, static_cast<std::size_t>(noise_seeds_));
+    const double fills = part_of(*run_.result.cycle, kFills * static_cast<double>(fill()));
+    const auto try_within = [&](double budget, std::size_t least, std::size_t most) {
+      for (std::size_t n = std::min(worth.size(), most); n >= least && n > 0; --n) {
+        const double part = part_within((budget - pilots_.taken()) / static_cast<double>(n));
+        if (part < std::max(kLeastPart, fills)) continue;
+        std::vector<std::size_t> some = worth;
+        std::erase_if(some, [&](std::size_t i) {
+          const double known = out_.gains[i].frame;
+          return known >= 1 || part < std::min(1.0, kMore * known);
+        });
+        if (some.size() < n) continue;
+        some.resize(n);
+        worth = std::move(some);
+        return part;
+      }
+      return 0.0;
+    };
+    if (const double part = try_within(kWanted - noise, std::min(worth.size(), kFewest), kContenders); part > 0)
+      return part;
+    const std::optional<std::size_t> named = named_gain(out_.gains);
+    if (named && !may_be_beaten(out_.gains, *named)) return 0;
+    return try_within(kWithFrame, 1, named ? kFewest : 1);
   }
 
   /// Simulates a pilot with other seeds: its places in the picture are the same, and their rays are others. It is the
-  /// last pilot, or twice as large if the budget has so much left, or the first one if it has less.
+  /// first one, or twice as large if the budget has so much left.
   void find_noise() {
     if (noise_seeds_ == 0) return;
     const auto seeds = static_cast<std::size_t>(noise_seeds_);
     const std::uint64_t twice = 2 * out_.paths;
-    BasePilot of{out_.paths, draw_, static_cast<double>(base_.cycle->cycles)};
-    if (twice <= run_.paths && budget_.of(twice, seeds + 1) <= budget_.left(kWithNoise, out_.simulated))
-      of = {twice, draw_, 0};
-    else if (budget_.of(out_.paths, seeds) > budget_.left(kWithNoise, out_.simulated))
-      of = seeds_;
-    if (budget_.of(of.paths, seeds) > budget_.left(out_.whole && !cold_ ? kWithFrame : kAtMost, out_.simulated)) return;
-    pilots_.begin("other seeds", seeds + (of.cycles > 0 ? 0 : 1), of.paths);
-    pilots_.take(of.draw);
+    const bool larger = twice <= run_.paths && pilots_.taken() + budget_.of(twice, seeds + 1) <= kWithNoise;
+    const std::uint64_t paths = larger ? twice : out_.paths;
+    if (pilots_.taken() + budget_.of(paths, seeds) > kWithFrame) return;
+    pilots_.begin("other seeds", seeds + (larger ? 1 : 0), paths);
     std::deque<Config> machines;
     std::vector<const Config*> which;
-    if (of.cycles <= 0) which.push_back(&config_);
+    if (larger) which.push_back(&config_);
     for (std::uint64_t k = 1; k <= noise_seeds_; ++k)
       which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
     std::vector<double> cycles;
-    if (of.cycles > 0) cycles.push_back(of.cycles);
+    if (!larger) cycles.push_back(static_cast<double>(base_.cycle->cycles));
     for (const RunResult& result : simulate(which))
       if (out_.complete) cycles.push_back(static_cast<double>(result.cycle->cycles));
     if (!out_.complete) return;
-    out_.noise = cycle_noise(cycles, of.paths >= run_.paths);
-    out_.noise_paths = of.paths;
+    out_.noise = cycle_noise(cycles, paths >= run_.paths);
+    out_.noise_paths = paths;
   }
 
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
@@ -374,14 +354,13 @@ class Search {
   const SearchedRun& run_;
   SearchBudget budget_;
   PilotRuns pilots_;
-  bool stops_ = false, cold_ = false;         // a resource; caches of the run
-  bool fixed_work_ = false;                   // of tests and shading
-  std::uint64_t noise_seeds_ = 0, draw_ = 0;  // draw_: of the present pilot
-  BasePilot seeds_;                           // the first pilot
+  bool stops_ = false, cold_ = false;  // a resource; caches of the run
+  bool fixed_work_ = false;            // of tests and shading
+  std::uint64_t noise_seeds_ = 0;
   std::vector<WhatIf> what_ifs_;
-  std::map<std::size_t, RelaxedPilot> relaxed_;  // by index of what_ifs_
+  std::map<std::size_t, RunResult> relaxed_;  // by index of what_ifs_
   RunResult base_;
-  Likeness likeness_;  // of the present pilot; a run in which a resource stops is not compared
+  Likeness likeness_;  // of the pilot; a run in which a resource stops is not compared
   Bottleneck out_;
 };
 

@@ -23,6 +23,7 @@ struct Gain {
   /// Classes that were relaxed together in the simulation, and gained so little that none was looked at alone, or for
   /// which the budget had nothing left; 0: none was simulated, as the part has so much to spare.
   std::size_t together = 1;
+  double frame = 0;  ///< part of the run's cycles from its start by which the gain is known; 0: by the pilot
 };
 
 /// A stretch of the pilot, by completed rays, and the class that gains most when it is relaxed there.
@@ -41,6 +42,7 @@ struct Bottleneck {
   std::uint64_t paths = 0;        ///< paths of the pilot
   std::uint64_t rays = 0;         ///< rays of the pilot, simulated for each class
   std::uint64_t simulated = 0;    ///< rays of all simulations of the search
+  double taken = 0;               ///< what they took, as a part of the run
   bool whole = false;             ///< the pilot is the whole frame
   std::uint64_t least_paths = 0;  ///< if not 0: the frame is too small for a search, and so many paths would do
   double deviation = 0;           ///< distance of the run's cycles from those that the pilot foretells, as a fraction
@@ -57,15 +59,15 @@ struct Bottleneck {
 ///
 /// Of some draws of a pilot that one is taken by which the machine as configured is most like the run. A class whose
 /// gain the run's ledger bounds below what is worth naming is not simulated (search_choices.h). The others are
-/// simulated for a first, small pilot: those that stand alone, and then, as far as they may gain what another one
-/// surely does, groups of those that the run kept busy for less than half of its time, or that others wait for. A group
-/// that may gain enough is divided, unless the pilot is not like the run and may not tell its gain from nothing. If it
-/// is sure then which class to name, the search ends. Else those that may be worth naming, at most six, are simulated
-/// for a larger one, the most promising first. A pilot that is not like the run is doubled, unless a class is worth
-/// naming in spite of the difference, which widens the intervals; where it is not, nothing is found out. The whole
-/// frame comes instead, for one class, if its caches are cold; and it comes last for the class that may gain most, if
-/// another than the one to be named may be the best. No simulation begins beyond the budget (pilot_runs.h),
-/// and a frame that is too small for it is not searched.
+/// simulated for a small pilot: those that stand alone, and then, as far as they may gain what another one surely does,
+/// groups of those that the run kept busy for less than half of its time, or that others wait for. A group that may
+/// gain enough is divided, unless the pilot is not like the run and may not tell its gain from nothing. If it is sure
+/// then which class to name, the search ends. Else the frame's beginning is simulated for those that may be the best
+/// (frame_beginning.h), which the run itself is compared with: once within what a search is to take, and again, for two
+/// of them or one, if another than the class to be named may be the best, or if none is to be named. A pilot that is
+/// not like the run tells of no class, unless one is worth naming in spite of the difference, which widens the
+/// intervals, or by the frame's beginning. No simulation begins beyond the budget (pilot_runs.h), and a frame that is
+/// too small for it is not searched. Where a resource stops there is no run to compare with, and the pilot is larger.
 ///
 /// The machine as configured is simulated with run.noise_seeds other seeds, for the noise of the run's cycles, by a
 /// pilot as large as the budget allows; not where a resource stops.

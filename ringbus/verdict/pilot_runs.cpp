@@ -37,13 +37,21 @@ Config with_other_seed(const Config& machine, std::uint64_t k) {
 
 void PilotRuns::begin(const char* stage, std::size_t machines, std::uint64_t paths) {
   paths_ = paths;
+  beginning_ = {1, 0};
   state_ = {stage, 0, machines, 0, run_.result.rays_completed * paths / std::max<std::uint64_t>(1, run_.paths)};
+}
+
+void PilotRuns::begin(std::size_t machines, const FrameBeginning& beginning) {
+  begin(beginning.part < 1 ? "the frame's beginning" : "whole frame", machines, run_.paths);
+  beginning_ = beginning;
+  if (beginning.part < 1) state_.rays = beginning.rays;
 }
 
 RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
   const std::unique_ptr<Workload> pilot = make_pilot_(machine, paths_, draw_);
   RunOptions options = options_;
   options.threads = threads;
+  if (beginning_.part < 1) options.enough = std::max<std::uint64_t>(1, beginning_.rays);
   // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
   options.warm = {&run_.result.cycle->recent_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths),
                   run_.warm, &run_.result.cycle->buffered, &run_.result.cycle->own_recent};
@@ -58,7 +66,7 @@ RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
   options.progress(0);
   RunResult result = run_cycle(machine, accel_, scene_size_, *pilot, options);
   const std::lock_guard lock(mutex_);
-  complete_ &= result.complete;
+  complete_ &= result.complete || !options.stop.stop_requested();
   simulated_rays_ += result.rays_completed;
   state_.under_way -= shown;
   ++state_.done;
@@ -79,9 +87,12 @@ std::vector<RunResult> PilotRuns::simulate(const std::vector<const Config*>& mac
         stopped = true;
         throw;
       }
-      if (!results[i].complete) stopped = true;
+      if (!results[i].complete && options_.stop.stop_requested()) stopped = true;
     }
   });
+  for (const RunResult& result : results)
+    taken_ += std::max(beginning_.part < 1 ? beginning_.part : 0,
+                       static_cast<double>(result.rays_completed) / static_cast<double>(run_.result.rays_completed));
   return results;
 }
 

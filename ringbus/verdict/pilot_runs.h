@@ -13,6 +13,7 @@
 #include "core/config/config.h"
 #include "core/types/workload.h"
 #include "ringbus/results/run_result.h"
+#include "ringbus/verdict/frame_beginning.h"
 #include "ringbus/verdict/small_frame.h"
 
 namespace carousel::ringbus {
@@ -35,13 +36,15 @@ enum class PilotSize : std::uint8_t { kFull, kLeast };
 std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64_t rays, std::uint64_t wanted,
                           PilotSize least);
 
-// These bound what a search simulates, as parts of the run's rays. A pilot's ray takes about as long as one of the run.
-// A pilot's paths stand for as many rays as the run's; where they have more, the search takes more.
-inline constexpr double kScreening = 0.4;  ///< that the first pilot is to take
-inline constexpr double kWithNoise = 0.7;  ///< that all are to take, where larger pilots tell the noise
-inline constexpr double kWanted = 0.9;     ///< that all pilots are to take
-inline constexpr double kAtMost = 1.2;     ///< beyond which no simulation begins after the first pilot
-inline constexpr double kWithFrame = 1.9;  ///< the same, where the last one is the whole frame
+// These bound what a search simulates, as parts of the run's rays, or of its cycles where it simulates the frame's
+// beginning. A pilot's ray takes about as long as one of the run. A pilot's paths stand for as many rays as the run's;
+// where they have more, the search takes more.
+inline constexpr double kScreening = 0.4;   ///< that the first pilot is to take
+inline constexpr double kScreened = 0.6;    ///< beyond which no group is divided
+inline constexpr double kWithNoise = 0.7;   ///< that all are to take, where a larger pilot tells the noise
+inline constexpr double kWanted = 0.85;     ///< that all are to take
+inline constexpr double kAtMost = 1.2;      ///< that the first pilot takes at most
+inline constexpr double kWithFrame = 1.75;  ///< that all take at most
 
 struct SearchBudget {
   std::uint64_t paths = 0, rays = 0;  ///< of the run
@@ -55,41 +58,7 @@ struct SearchBudget {
   double of(std::uint64_t pilot, std::size_t simulations) const {
     return static_cast<double>(simulations * pilot) / static_cast<double>(paths);
   }
-  /// Returns the part that is left of `part` when so many rays have been simulated.
-  double left(double part, std::uint64_t simulated) const {
-    return part - static_cast<double>(simulated) / static_cast<double>(rays);
-  }
 };
-
-/// Paths of a pilot twice as large for one to two of these classes, of which the others are left out, or none if there
-/// are none; 0 if `left` of the run's rays does not suffice.
-inline std::uint64_t doubled(const SearchBudget& budget, std::uint64_t pilot, double left,
-                             std::vector<std::size_t>& classes) {
-  const std::uint64_t twice = std::min(budget.paths, 2 * pilot);
-  for (classes.resize(std::min<std::size_t>(classes.size(), 2));; classes.pop_back()) {
-    if (budget.of(twice, classes.size() + 1) <= left) return twice;
-    if (classes.size() <= 1) return 0;
-  }
-}
-
-/// Paths of the pilot that follows one that is not like the run, for these classes or fewer: twice as many. No part of
-/// a cold frame is like it, so that the whole frame follows for one class. 0 if the budget has none.
-inline std::uint64_t paths_after_unlike(const SearchBudget& budget, std::uint64_t pilot, bool cold,
-                                        std::uint64_t simulated, std::vector<std::size_t>& classes) {
-  if (!cold || classes.empty() || budget.left(kWithFrame, simulated) < 1)
-    return doubled(budget, pilot, budget.left(kAtMost, simulated), classes);
-  classes.resize(1);
-  return budget.paths;
-}
-
-/// Paths of the pilot that tells the first of these classes, which gains most, from noise: the whole frame, whose
-/// cycles as configured are known, if the budget has so many, or else twice as many as before. 0 if it has none.
-inline std::uint64_t paths_against_noise(const SearchBudget& budget, std::uint64_t pilot, std::uint64_t simulated,
-                                         std::vector<std::size_t>& classes) {
-  if (budget.left(kWithFrame, simulated) < 1) return doubled(budget, pilot, budget.left(kAtMost, simulated), classes);
-  classes.resize(1);
-  return budget.paths;
-}
 
 /// The paths of a frame like that of the run in which the least pilots of so many machines keep within the budget: two
 /// digits, rounded up.
@@ -100,30 +69,19 @@ inline std::uint64_t least_frame(const Config& config, const SearchedRun& run, s
   return two_digits_up(static_cast<double>(machines * pilot) / kAtMost);
 }
 
-/// Paths of a search's first pilot, which so many machines simulate: the least that will do where more would take too
-/// much.
+/// Paths of a search's pilot, which so many machines simulate and which is to take this part of the run: the least that
+/// will do where more would take too much.
 inline std::uint64_t first_paths(const Config& config, std::uint64_t paths, const SearchBudget& budget,
-                                 std::size_t machines) {
+                                 std::size_t machines, double part) {
   constexpr double kMuch = 0.6;
-  const std::uint64_t wanted = budget.share(kScreening, machines),
+  constexpr std::size_t kMore = 1;  // draws of the pilot, and parts of groups
+  const std::uint64_t wanted = budget.share(part, machines + kMore),
                       full = pilot_paths(config, paths, budget.rays, wanted, PilotSize::kFull);
   return budget.of(full, machines) <= kMuch ? full : pilot_paths(config, paths, budget.rays, wanted, PilotSize::kLeast);
 }
 
 /// The machine with the picture's k-th other seed, of the same range, far from those that users count up from.
 Config with_other_seed(const Config& machine, std::uint64_t k);
-
-/// A pilot with the machine as configured.
-struct BasePilot {
-  std::uint64_t paths = 0, draw = 0;
-  double cycles = 0;  ///< 0: not known
-};
-
-/// A relaxed machine's run, and the pilot that it was.
-struct RelaxedPilot {
-  RunResult result;
-  std::uint64_t paths = 0;
-};
 
 /// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
 /// machine, and others for another `draw`.
@@ -154,6 +112,8 @@ class PilotRuns {
 
   /// A pilot of so many paths, which this number of machines will get.
   void begin(const char* stage, std::size_t machines, std::uint64_t paths);
+  /// The frame's beginning, which this number of machines will get.
+  void begin(std::size_t machines, const FrameBeginning& beginning);
   /// Pilots are of this draw from now on.
   void take(std::uint64_t draw) { draw_ = draw; }
   void expect_more(std::size_t machines) { state_.of += machines; }
@@ -168,6 +128,8 @@ class PilotRuns {
   bool complete() const { return complete_; }
   /// Rays that all simulations so far have completed.
   std::uint64_t simulated_rays() const { return simulated_rays_; }
+  /// What all simulations so far took, as a part of the run.
+  double taken() const { return taken_; }
 
  private:
   RunResult simulate(const Config& machine, std::size_t threads);
@@ -182,7 +144,9 @@ class PilotRuns {
   std::mutex mutex_;  // guards the members below, and the observer
   SearchProgress state_;
   bool complete_ = true;
+  FrameBeginning beginning_{1, 0};
   std::uint64_t simulated_rays_ = 0;
+  double taken_ = 0;
 };
 
 }  // namespace carousel::ringbus

@@ -25,8 +25,10 @@ namespace carousel::ringbus {
 inline constexpr double kEnough = 0.03;
 /// A pilot that differs from the run by this part or less is taken without a further draw.
 inline constexpr double kLike = 0.05;
-/// Classes that a larger pilot relaxes at most, and where it may become dear.
+/// Classes that the frame's beginning is simulated for at most, and at least if there are so many.
 inline constexpr std::size_t kContenders = 6, kFewest = 2;
+/// The least part of a frame that tells more of it than a pilot.
+inline constexpr double kLeastPart = 0.12;
 
 inline double rays_per_kilocycle(std::uint64_t rays, double cycles) {
   return 1000 * static_cast<double>(rays) / std::max(1.0, cycles);
@@ -40,8 +42,9 @@ inline double busy(const cycle::CycleResult& run, std::string_view part) {
 }
 
 /// The part of the run's time in which resources waited for what a class of parts makes shorter: in the mean, and half
-/// as much again, since others wait for their rays; or half the time of the one that waited most, if that is more. 1 if
-/// nobody counts that. Warps and the resources of a central machine wait in other ways.
+/// as much again, since others wait for their rays; or half the time of the one that waited most, if that is more. A
+/// resource whose packet waits for shapes counts as waiting for tests while another packet is in test, so that may be
+/// time of the memory, too. 1 if nobody counts that. Warps and the resources of a central machine wait in other ways.
 inline double waited(const cycle::CycleResult& run, std::string_view part) {
   using cycle::TileState;
   constexpr std::array<std::string_view, 12> kMemory{
@@ -51,8 +54,8 @@ inline double waited(const cycle::CycleResult& run, std::string_view part) {
              credits = part == "packets_in_flight", storage = part == "collection_storage",
              latency = part == "test_latency";
   if (run.tiles.empty() || (!memory && !credits && !storage && !latency)) return 1;
-  constexpr double kOthersWait = 1.5;
-  Cycle sum = 0, most = 0;
+  constexpr double kOthersWait = 1.5, kBehindTests = 1;
+  Cycle sum = 0, behind = 0, most = 0;
   for (const cycle::TileResult& tile : run.tiles) {
     if (tile.warps || tile.distributor) return 1;
     const Cycle own = latency ? tile.testing.latency
@@ -60,9 +63,11 @@ inline double waited(const cycle::CycleResult& run, std::string_view part) {
                                                                      : credits ? TileState::kCredits
                                                                                : TileState::kStorage)];
     sum += own;
+    behind += memory ? tile.testing.latency : 0;
     most = std::max(most, own);
   }
-  return std::max(kOthersWait * static_cast<double>(sum) / static_cast<double>(run.tiles.size()),
+  return std::max((kOthersWait * static_cast<double>(sum) + kBehindTests * static_cast<double>(behind)) /
+                      static_cast<double>(run.tiles.size()),
                   static_cast<double>(most) / 2) /
          static_cast<double>(run.cycles);
 }
@@ -125,6 +130,14 @@ inline double gain_beyond(const Estimate& pilot, std::string_view part) {
   return pilot.high < -kMostLost && !is_choice(part) ? 1 - pilot.high : std::max(0.0, -pilot.value);
 }
 
+/// The interval of what a pilot says of more ray slots. Where it is small, it hardly sees them full: of 184 such gains
+/// nine lay outside of their interval, by up to half.
+inline Estimate of_few_slots(const Estimate& pilot) {
+  constexpr double kError = 0.3;
+  return {pilot.value, pilot.value - std::hypot(pilot.value - pilot.low, kError),
+          pilot.value + std::hypot(pilot.high - pilot.value, kError)};
+}
+
 /// True if the parts of a class had nothing to do for more than half of the run.
 inline bool idle(const cycle::CycleResult& run, std::string_view part) {
   return busy(run, part) <= 0.5;
@@ -170,17 +183,10 @@ inline void leave_out(std::vector<std::vector<std::size_t>>& groups, const std::
   std::erase_if(groups, [](const std::vector<std::size_t>& group) { return group.empty(); });
 }
 
-/// The greatest gain of a class that was relaxed alone.
-inline double greatest_alone(const std::vector<Gain>& gains) {
-  double out = 0;
-  for (const Gain& gain : gains)
-    if (gain.together == 1) out = std::max(out, gain.gain);
-  return out;
-}
-
+/// By the middle of their intervals: that of a gain of which a pilot tells nothing reaches far up.
 inline void greatest_first(const std::vector<Gain>& gains, std::vector<std::size_t>& classes) {
-  std::stable_sort(classes.begin(), classes.end(),
-                   [&](std::size_t a, std::size_t b) { return gains[a].gain > gains[b].gain; });
+  const auto middle = [&](std::size_t i) { return gains[i].low + gains[i].high; };
+  std::stable_sort(classes.begin(), classes.end(), [&](std::size_t a, std::size_t b) { return middle(a) > middle(b); });
 }
 
 /// The class that a verdict would name; absent if it would name none.
@@ -188,15 +194,23 @@ inline std::optional<std::size_t> named_gain(const std::vector<Gain>& gains) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < gains.size(); ++i)
     if (gains[i].together == 1 && worth_naming(gains[i].gain, gains[i].low) &&
-        (!best || gains[i].gain > gains[*best].gain))
+        (!best || likely_gain(gains[i].gain, gains[i].low) > likely_gain(gains[*best].gain, gains[*best].low)))
       best = i;
   return best;
 }
 
-/// True if a class is worth naming although the run's cycles differ so from those that the pilot foretells.
+/// True if a class is worth naming although the run's cycles differ so from those that the pilot foretells; or because
+/// the frame's beginning tells of it, which needs no pilot.
 inline bool stands_out(const std::vector<Gain>& gains, double deviation) {
   constexpr double kMuch = 0.4;
-  return std::abs(deviation) <= kMuch && named_gain(gains);
+  const std::optional<std::size_t> named = named_gain(gains);
+  return named && (std::abs(deviation) <= kMuch || gains[*named].frame > 0);
+}
+
+/// What the class that a verdict would name is likely to gain; 0 if it would name none.
+inline double likely(const std::vector<Gain>& gains) {
+  const std::optional<std::size_t> best = named_gain(gains);
+  return best ? likely_gain(gains[*best].gain, gains[*best].low) : 0;
 }
 
 /// What the class that a verdict would name surely gains; 0 if it would name none.
@@ -215,38 +229,24 @@ inline bool sure(const std::vector<Gain>& gains) {
   return true;
 }
 
-/// The classes that a larger pilot relaxes: those that might be the ones to name, the greatest gain first;
-/// `memory_first`: after those that gain more while caches are cold.
-inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gains, std::size_t most,
-                                                    bool memory_first) {
+/// The classes that the frame's beginning is simulated for: those that might be the ones to name, the greatest gain
+/// first.
+inline std::vector<std::size_t> worth_a_second_look(const std::vector<Gain>& gains, std::size_t most) {
   const double enough = std::max(kEnough, surely(gains));
   std::vector<std::size_t> out;
   for (std::size_t i = 0; i < gains.size(); ++i)
     if (gains[i].together == 1 && gains[i].high >= enough) out.push_back(i);
   greatest_first(gains, out);
-  if (memory_first)
-    std::stable_partition(out.begin(), out.end(), [&](std::size_t i) { return gains_of_cold_caches(gains[i].name); });
   out.resize(std::min(out.size(), most));
   return out;
 }
 
-/// The class that a whole frame, of which the gains of some classes are known, tells most about: of the one to be named
-/// and those that may gain more, the one that may gain most. Where none is to be named, the one that gains most, if
-/// that is worth naming. Absent if nothing may change.
-template <class Known>
-std::optional<std::size_t> most_promising(const std::vector<Gain>& gains, const Known& known) {
-  const std::optional<std::size_t> named = named_gain(gains);
-  std::optional<std::size_t> out;
-  bool rivals = !named;
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    const Gain& gain = gains[i];
-    if (gain.together != 1 || known(i)) continue;
-    const bool may_be_best = named ? gain.high > gains[*named].gain + kEnough : gain.gain >= kWorthIt;
-    if (i != named && !may_be_best) continue;
-    rivals |= i != named;
-    if (!out || (named ? gain.high > gains[*out].high : gain.gain > gains[*out].gain)) out = i;
-  }
-  return rivals ? out : std::nullopt;
+/// True if another class may gain more than the one to be named, by more than settles a tie: of those that were relaxed
+/// alone.
+inline bool may_be_beaten(const std::vector<Gain>& gains, std::size_t named) {
+  return std::any_of(gains.begin(), gains.end(), [&](const Gain& one) {
+    return &one != &gains[named] && one.together == 1 && one.high > gains[named].gain + kEnough;
+  });
 }
 
 /// True if most of what the run waited for may be first reads of lines: memory was busy for most of it. Part of such a

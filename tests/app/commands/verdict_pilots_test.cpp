@@ -19,6 +19,17 @@ class VerdictPilots : public testing::Test {
  protected:
   Json searched(const std::string& config) const { return run_report(program_, config, {"engine.what_if=true"}); }
 
+  /// Runs the relaxed machine of a gain in the configuration of the last search: the real gain lies in its interval.
+  void expect_real(const Json& report, const Json& gain) const {
+    std::vector<std::string> words{"run", "a.yaml", "--quiet", "--force", "--out", "twice"};
+    for (const Json& set : gain["sets"]) words.insert(words.end(), {"--set", set.get<std::string>()});
+    ASSERT_EQ(program_.run(words).status, 0);
+    const Json twice = Json::parse(program_.read("twice/report.json"));
+    const double real = report["engine"]["cycles"].get<double>() / twice["engine"]["cycles"].get<double>() - 1;
+    EXPECT_GE(real, gain["low"].get<double>()) << gain.dump();
+    EXPECT_LE(real, gain["high"].get<double>()) << gain.dump();
+  }
+
   const Program program_;
 };
 
@@ -128,13 +139,17 @@ TEST_F(VerdictPilots, NothingGainsMoreThanTheWorkOfOthersLeaves) {
     }
 }
 
-// By a pilot that is drawn by position alone the run takes 17 % longer than foretold.
-TEST_F(VerdictPilots, APilotWithTheWorkOfTheFrameIsLikeIt) {
+// The pilot of so small a frame is half as long again as the run, and would be told to be unlike it. The frame's own
+// beginning is not.
+TEST_F(VerdictPilots, TheFramesBeginningNeedsNoPilotThatIsLikeTheRun) {
   const Json report = searched(kOtherCycles), bottleneck = report["bottleneck"];
+  EXPECT_GT(std::abs(bottleneck["deviation"].get<double>()), 0.4);
   EXPECT_EQ(bottleneck["unlike"], "");
   EXPECT_EQ(bottleneck["limits"], "link_bandwidth") << bottleneck.dump(1);
-  EXPECT_LT(std::abs(bottleneck["deviation"].get<double>()), 0.1);
-  EXPECT_LT(bottleneck["rays"], 0.2 * report["rays"]["completed"].get<double>());
+  const Json& named = bottleneck["gains"][0];
+  EXPECT_GT(named["frame"], 0.1);
+  EXPECT_LT(named["frame"], 1);
+  expect_real(report, named);
 }
 
 // Sky above and ground below: a draw by position alone has some percent more rays a path than the frame, and its
@@ -146,26 +161,25 @@ TEST_F(VerdictPilots, PlacesAreDrawnWhoseWorkIsThatOfTheFrame) {
   const double rays = report["rays"]["completed"].get<double>();
   EXPECT_LT(bottleneck["rays"], 0.2 * rays);
   const Json& named = bottleneck["gains"][0];
-  std::vector<std::string> words{"run", "a.yaml", "--quiet", "--force", "--out", "twice"};
-  for (const Json& set : named["sets"]) words.insert(words.end(), {"--set", set.get<std::string>()});
-  ASSERT_EQ(program_.run(words).status, 0);
-  const Json twice = Json::parse(program_.read("twice/report.json"));
-  const double real = report["engine"]["cycles"].get<double>() / twice["engine"]["cycles"].get<double>() - 1;
-  EXPECT_GE(real, named["low"].get<double>());
-  EXPECT_LE(real, named["high"].get<double>());
+  expect_real(report, named);
 }
 
-// The run takes a fifth less than foretold by the pilot that is taken, which is more than the uncertainty. Contexts
-// stand out all the same, and their interval is wider by three quarters of that, of half of the time.
+// The run takes a seventh less than foretold by the pilot that is taken. Contexts stand out all the same. What the
+// pilot alone tells is uncertain by three quarters of that difference, of half of the time.
 TEST_F(VerdictPilots, AClassThatStandsOutIsNamedInSpiteOfOtherCycles) {
   const Json report = searched(kSlowMemory), bottleneck = report["bottleneck"];
   EXPECT_EQ(bottleneck["unlike"], "");
   EXPECT_EQ(bottleneck["limits"], "contexts") << bottleneck.dump(1);
   const double off = std::abs(bottleneck["deviation"].get<double>());
-  EXPECT_GT(off, bottleneck["noise"].get<double>() + 0.02);
-  const Json& named = bottleneck["gains"][0];
-  const double gain = named["gain"], half = gain - named["low"].get<double>();
-  EXPECT_GE(half, 0.75 * off * (1 + gain) * (1 + gain) / 2 - 1e-6);
+  EXPECT_GT(off, 0.1);
+  int of_pilot = 0;
+  for (const Json& one : bottleneck["gains"]) {
+    if (one["together"] != 1 || one["frame"] > 0) continue;
+    ++of_pilot;
+    const double gain = one["gain"], half = gain - one["low"].get<double>();
+    EXPECT_GE(half, 0.75 * off * (1 + gain) * (1 + gain) / 2 - 1e-6) << one.dump();
+  }
+  EXPECT_GE(of_pilot, 2);
   EXPECT_LT(bottleneck["rays"], 0.1 * report["rays"]["completed"].get<double>());
 }
 

@@ -21,9 +21,9 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// How many times the rays of the run the search simulated, by its log.
+/// What the search took as a part of the run, by its log.
 double times_of_run(const std::string& log) {
-  const std::string before = "rays, ", after = " times those of the run";
+  const std::string before = "took ", after = " times the run";
   const std::size_t end = log.find(after), begin = log.rfind(before, end) + before.size();
   EXPECT_NE(end, std::string::npos) << log;
   return end == std::string::npos ? 0 : std::stod(log.substr(begin, end - begin));
@@ -65,7 +65,7 @@ TEST_F(VerdictRun, TheNamedClassGainsWhatIsForetoldOfTheWholeFrame) {
   EXPECT_GE(real, named["low"].get<double>() - 0.01);
   EXPECT_LE(real, named["high"].get<double>() + 0.01);
   EXPECT_LT(named["low"], named["gain"]);
-  EXPECT_LT(named["gain"], named["high"]);
+  EXPECT_LE(named["gain"], named["high"]);
   const Json& noise = report["cycle_noise"];
   EXPECT_FALSE(noise["whole_frame"]);
   EXPECT_LT(noise["fraction"], 0.15);
@@ -169,8 +169,7 @@ TEST_F(VerdictRun, ASearchKeepsItsBudgetAlsoOfSmallFrames) {
       ASSERT_EQ(outcome.status, 0) << outcome.err;
       const Json bottleneck = Json::parse(program_.read("out/report.json"))["bottleneck"];
       if (bottleneck.contains("frame_too_small")) continue;
-      EXPECT_LE(times_of_run(outcome.err), bottleneck["whole_frame"] ? 1.7 : 1.2)
-          << size << " pixels, " << slots << " slots";
+      EXPECT_LE(times_of_run(outcome.err), 1.85) << size << " pixels, " << slots << " slots";
       ++searched;
     }
   EXPECT_GE(searched, 4);
@@ -194,29 +193,26 @@ TEST_F(VerdictRun, WhatTheLedgerBoundsIsNotSimulated) {
   EXPECT_GE(bounded, 3) << report["bottleneck"].dump(1);
 }
 
-// No part of a frame whose reads are all first ones is like it: the frame itself is simulated, for the class that gains
-// most. What is told of that is what a run of the relaxed machine takes.
-TEST_F(VerdictRun, OfColdCachesTheWholeFrameIsSimulated) {
+// No part of a frame whose reads are all first ones is like it, but the frame's own beginning is as cold as the frame.
+TEST_F(VerdictRun, OfColdCachesTheFramesBeginningTells) {
   std::vector<std::string> sets{"engine.what_if=true", "image.width=96", "image.height=72", "scene.triangles=20000"};
   for (const char* set : {"rays.slots_per_resource=16", "memory.l2_kib=4096", "memory.dram_bytes_per_cycle=1",
                           "memory.shape_buffer_kib=4", "testers.triangle.units=8", "testers.box.units=16"})
     sets.emplace_back(set);
   const Json frame = run(kTerrain, sets);
   const Json& bottleneck = frame["bottleneck"];
-  ASSERT_TRUE(bottleneck["whole_frame"].get<bool>()) << bottleneck.dump(1);
-  EXPECT_EQ(bottleneck["paths"], 96 * 72 * 2);
-  EXPECT_EQ(bottleneck["rays"], frame["rays"]["completed"]);
-  EXPECT_EQ(bottleneck["deviation"], 0);
   const std::string named = bottleneck["cold_caches"]["named"];
   const Json& gains = bottleneck["gains"];
   const auto gain = std::find_if(gains.begin(), gains.end(), [&](const Json& one) { return one["name"] == named; });
   ASSERT_NE(gain, gains.end());
   EXPECT_EQ((*gain)["together"], 1);
+  EXPECT_GT((*gain)["frame"].get<double>(), 0.1);
   sets[0] = "engine.what_if=false";
   for (const Json& set : (*gain)["sets"]) sets.push_back(set);
   const double real =
       frame["engine"]["cycles"].get<double>() / run(kTerrain, sets)["engine"]["cycles"].get<double>() - 1;
-  EXPECT_NEAR((*gain)["gain"].get<double>(), real, 1e-9);
+  EXPECT_GE(real, (*gain)["low"].get<double>());
+  EXPECT_LE(real, (*gain)["high"].get<double>());
 }
 
 // Every line is read once from a slow memory, since the L2 holds the scene. With an L2 that holds little, lines are
@@ -282,9 +278,8 @@ TEST_F(VerdictRun, TheSearchTakesAllCoresUnlessTheConfigurationSaysHowMany) {
   }
 }
 
-// Nothing comes near to what more testers gain here, so that no other class is simulated for the larger pilot: by six
-// classes and the machine as configured it would bring the search to nearly as many rays as the run.
-TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoLargerPilot) {
+// Nothing comes near to what more testers gain here, so that the frame's beginning is simulated for no other class.
+TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoBeginning) {
   if (!long_tests_run()) GTEST_SKIP() << kInSoak;
   program_.write("a.yaml", kTerrain);
   const Outcome outcome = program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--set", "image.width=256",
@@ -296,8 +291,8 @@ TEST_F(VerdictRun, ClassesThatAnotherOneSurelyBeatsCostNoLargerPilot) {
   EXPECT_GT(times, 0.3);
 }
 
-// More testers gain more than twice what anything else does, and the first pilot knows it.
-TEST_F(VerdictRun, ASearchThatIsSureAfterItsFirstPilotStops) {
+// More testers gain more than twice what anything else does, and the pilot knows it.
+TEST_F(VerdictRun, ASearchThatIsSureAfterItsPilotStops) {
   program_.write("a.yaml", kTerrain);
   const Outcome outcome =
       program_.run({"run", "a.yaml", "--set", "engine.what_if=true", "--out", "out", "--log-level", "debug"});
@@ -306,7 +301,7 @@ TEST_F(VerdictRun, ASearchThatIsSureAfterItsFirstPilotStops) {
   EXPECT_LT(times_of_run(outcome.err), 0.7);
 }
 
-// The first pilots of this picture are small beside it, half sky, and not quite like the run.
+// The pilots of this picture are small beside it, half sky, and not quite like the run.
 TEST_F(VerdictRun, AShippedMachineWithAnotherSeedNamesTheSamePart) {
   const Outcome outcome = program_.run(
       {"run", CAROUSEL_SOURCE_DIR "/configs/xe2_like.yaml", "--quiet", "--set", "image.seed=2", "--out", "out"});

@@ -1,4 +1,4 @@
-#include "ringbus/verdict/frame_lines.h"
+#include "ringbus/sampling/frame_lines.h"
 
 #include <cmath>
 

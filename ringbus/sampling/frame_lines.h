@@ -1,6 +1,6 @@
 #pragma once
 
-#include "ringbus/verdict/sample_estimate.h"
+#include "ringbus/sampling/sample_estimate.h"
 
 namespace carousel::ringbus {
 

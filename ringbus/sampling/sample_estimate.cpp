@@ -1,4 +1,4 @@
-#include "ringbus/verdict/sample_estimate.h"
+#include "ringbus/sampling/sample_estimate.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 
 #include "ringbus/cycle/messages/memory_messages.h"
 #include "ringbus/verdict/bottleneck_search.h"
-#include "ringbus/verdict/frame_lines.h"
+#include "ringbus/sampling/frame_lines.h"
 #include "ringbus/verdict/progress_blocks.h"
 #include "ringbus/verdict/steady_state.h"
 

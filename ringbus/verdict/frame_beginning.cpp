@@ -1,0 +1,132 @@
+#include "ringbus/verdict/frame_beginning.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "ringbus/verdict/progress_blocks.h"
+
+namespace carousel::ringbus {
+
+namespace {
+
+using cycle::CycleResult;
+using cycle::ProgressSample;
+
+/// Two blocks are about as busy if the parts of the time for which they were differ by this, in units of the root of
+/// the frame's: 3 % of the time for a class that is busy for 1 %, and 30 % for one that always is.
+constexpr double kAsBusy = 0.3;
+/// The weight of the mean of the beginning, beside that of a block that is just as busy.
+constexpr double kOfMean = 0.5;
+
+double at_cycle(const CycleResult& run, double cycle, const auto& value) {
+  return at_place(
+      run, [&](std::size_t i) { return static_cast<double>(run.progress[i].at); }, cycle, value);
+}
+
+double completed_of(const ProgressSample& sample) {
+  return static_cast<double>(sample.completed);
+}
+
+/// When a run had completed so many rays.
+double when(const CycleResult& run, double completed) {
+  return at_place(
+      run, [&](std::size_t i) { return completed_of(run.progress[i]); }, completed, cycle_of);
+}
+
+/// How busy the run kept the classes of parts in blocks of this length, from its start.
+class BusyBlocks {
+ public:
+  BusyBlocks(const CycleResult& run, double length, std::size_t blocks) {
+    for (std::size_t i = 0; i < run.uses.size(); ++i)
+      if (run.uses[i].parts > 0 && run.uses[i].busy > 0) classes_.push_back(i);
+    for (std::size_t block = 0; block < blocks; ++block)
+      for (const std::size_t i : classes_) {
+        const auto reached = [&](std::size_t at) {
+          return at_cycle(run, static_cast<double>(at) * length,
+                          [i](const ProgressSample& s) { return static_cast<double>(s.busy[i]); });
+        };
+        const cycle::ClassUse& use = run.uses[i];
+        const double unit = std::sqrt(static_cast<double>(use.busy) * use.parts / static_cast<double>(run.cycles));
+        shares_.push_back((reached(block + 1) - reached(block)) / (length * unit));
+      }
+  }
+  /// 1 if both blocks are as busy, and less the more they differ.
+  double likeness(std::size_t a, std::size_t b) const {
+    double squares = 0;
+    for (std::size_t i = 0; i < classes_.size(); ++i) {
+      const double d = shares_[a * classes_.size() + i] - shares_[b * classes_.size() + i];
+      squares += d * d;
+    }
+    return std::exp(-squares / (2 * kAsBusy * kAsBusy));
+  }
+
+ private:
+  std::vector<std::size_t> classes_;
+  std::vector<double> shares_;  // block by block
+};
+
+}  // namespace
+
+FrameBeginning beginning_of(const CycleResult& run, double part) {
+  return {part, static_cast<std::uint64_t>(at_cycle(run, part * static_cast<double>(run.cycles), completed_of))};
+}
+
+double part_of(const CycleResult& run, double rays) {
+  return std::min(1.0, when(run, rays) / static_cast<double>(run.cycles));
+}
+
+Estimate gain_by_beginning(const CycleResult& run, const CycleResult& relaxed, const FrameBeginning& beginning,
+                           std::uint64_t fill, bool warms) {
+  constexpr std::size_t kBlocks = 16;
+  constexpr double kSteps = 0.35, kTrend = 1.5, kUnknown = 0.5, kLittle = 0.01, kSeeds = 3.1, kLeast = 0.05;
+  const double all = static_cast<double>(run.cycles), length = beginning.part * all / kBlocks;
+  std::vector<double> taken;  // of the relaxed machine's cycles for each of the run's
+  double reached = 0;
+  std::size_t filling = kBlocks / 8;
+  for (std::size_t block = 1; block <= kBlocks; ++block) {
+    const double completed = at_cycle(run, static_cast<double>(block) * length, completed_of),
+                 now = when(relaxed, completed);
+    taken.push_back((now - reached) / length);
+    reached = now;
+    if (completed < static_cast<double>(fill)) filling = std::clamp(block, filling, kBlocks / 2);
+  }
+  const auto full = taken.begin() + static_cast<std::ptrdiff_t>(filling);
+  const double count = static_cast<double>(taken.end() - full), mean = std::accumulate(full, taken.end(), 0.0) / count;
+  double deviation = 0, steps = 0;
+  for (auto at = full; at != taken.end(); ++at) {
+    deviation += (*at - mean) * (*at - mean) / count;
+    if (at != full) steps += (*at - at[-1]) * (*at - at[-1]) / (2 * (count - 1));
+  }
+  const std::size_t rest = static_cast<std::size_t>(std::lround((1 / beginning.part - 1) * kBlocks));
+  const BusyBlocks busy(run, length, kBlocks + rest);
+  double of_rest = 0, unknown = 0;
+  for (std::size_t block = kBlocks; block < kBlocks + rest; ++block) {
+    double sum = kOfMean * mean, weights = kOfMean;
+    for (std::size_t like = filling; like < kBlocks; ++like) {
+      const double weight = busy.likeness(block, like);
+      sum += weight * taken[like];
+      weights += weight;
+    }
+    of_rest += sum / weights / static_cast<double>(rest);
+    unknown += kOfMean / weights / static_cast<double>(rest);
+  }
+  const auto middle = full + (taken.end() - full) / 2;
+  const double left = 1 - beginning.part,
+               still = warms ? left * std::max(0.0,
+                                               std::accumulate(full, middle, 0.0) / static_cast<double>(middle - full) -
+                                                   std::accumulate(middle, taken.end(), 0.0) /
+                                                       static_cast<double>(taken.end() - middle))
+                             : 0,
+               time = std::max(kLeast, beginning.part * reached / (kBlocks * length) + left * of_rest),
+               seeds = kSeeds * std::sqrt(steps * beginning.part / kBlocks),
+               trend = kTrend * std::sqrt(std::max(0.0, deviation - steps)),
+               error = std::hypot(std::hypot(left * kSteps * std::sqrt(steps), left * trend), left * kUnknown * unknown,
+                                  seeds) +
+                       kLittle * left;
+  return {1 / time - 1, 1 / (time + error) - 1, 1 / std::max(kLeast, time - error - still) - 1};
+}
+
+}  // namespace carousel::ringbus
