@@ -1,6 +1,9 @@
 #include "app/site/result_page.h"
 
+#include <cstdint>
 #include <exception>
+#include <fstream>
+#include <iterator>
 #include <optional>
 #include <utility>
 
@@ -36,14 +39,27 @@ std::optional<Json> versus_beside(const Json& report, const std::filesystem::pat
   return std::nullopt;
 }
 
+/// The rows of all pixels; none where there is no such file.
+std::string rows_of_heat(const std::filesystem::path& file) {
+  constexpr std::uintmax_t kMostBytes = 64u << 20;
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error) || std::filesystem::file_size(file, error) > kMostBytes) return {};
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 }  // namespace
 
 std::string run_page_of(const Json& report, const std::filesystem::path& folder) {
-  report::html::Picture picture, heat;
+  report::html::Picture picture;
+  report::html::HeatMap heat;
   if (report.contains("digest") && report["digest"].contains("image"))
     if (const auto found = shading::page_picture(folder / "image.png")) picture = {found->mime_type, found->bytes};
-  if (report.contains("heat"))
-    if (const auto found = shading::page_picture(folder / "heat_cycles.png")) heat = {found->mime_type, found->bytes};
+  if (report.contains("heat")) {
+    if (const auto found = shading::page_picture(folder / "heat_cycles.png"))
+      heat.picture = {found->mime_type, found->bytes};
+    heat.rows = rows_of_heat(folder / "heat.csv");
+  }
   const std::optional<Json> versus = versus_beside(report, folder);
   return report::html::run_page(report, picture, heat, versus ? &*versus : nullptr);
 }

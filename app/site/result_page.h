@@ -10,8 +10,9 @@
 
 namespace carousel::app {
 
-/// report.html of a run whose picture, if it has one, is `folder`/image.png. Where `folder` or its neighbour
-/// `folder`-versus has a versus.json of the same machine, that is told beside the answers.
+/// report.html of a run whose picture, if it has one, is `folder`/image.png, and its map of pixels heat.csv there.
+/// Where `folder` or its neighbour `folder`-versus has a versus.json of the same machine, that is told beside the
+/// answers.
 std::string run_page_of(const nlohmann::ordered_json& report, const std::filesystem::path& folder);
 
 /// The page of any file that a command wrote. Throws FileError for a point without a report.

@@ -45,6 +45,30 @@ std::array<std::uint8_t, 3> heat_color(double at) {
   return out;
 }
 
+/// The places of a quantity's values between 0 and 1. By logarithms the least value above 0 is at kFirst, so that
+/// values which are large and near one another differ, and 0 stands below it. web/src/heat_map.js has the same scale.
+class HeatScale {
+ public:
+  HeatScale(std::span<const PixelCost> pixels, const HeatValue& value, bool log) : log_(log) {
+    for (const PixelCost& pixel : pixels) {
+      const auto v = static_cast<double>(value.of(pixel));
+      most_ = std::max(most_, v);
+      if (v > 0) least_ = least_ > 0 ? std::min(least_, v) : v;
+    }
+    log_ = log_ && least_ < most_;
+  }
+  double place(std::uint64_t value) const {
+    constexpr double kFirst = 0.08;
+    const auto v = static_cast<double>(value);
+    if (!log_) return report::ratio(v, most_);
+    return v > 0 ? kFirst + (1 - kFirst) * std::log(v / least_) / std::log(most_ / least_) : 0;
+  }
+
+ private:
+  bool log_;
+  double least_ = 0, most_ = 0;
+};
+
 }  // namespace
 
 std::optional<report::Heat> heat_section(std::span<const PixelCost> pixels, std::uint32_t width) {
@@ -71,16 +95,11 @@ std::optional<report::Heat> heat_section(std::span<const PixelCost> pixels, std:
 
 void write_heat(const std::filesystem::path& folder, std::span<const PixelCost> pixels, std::uint32_t width, bool log) {
   const auto height = static_cast<std::uint32_t>(pixels.size() / width);
-  const auto scaled = [&](std::uint64_t value) {
-    const auto v = static_cast<double>(value);
-    return log ? std::log1p(v) : v;
-  };
   std::vector<std::uint8_t> rgb(3 * pixels.size());
   for (const HeatValue& value : kHeatValues) {
-    std::uint64_t most = 0;
-    for (const PixelCost& pixel : pixels) most = std::max(most, value.of(pixel));
+    const HeatScale scale(pixels, value, log);
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-      const auto color = heat_color(report::ratio(scaled(value.of(pixels[i])), scaled(most)));
+      const auto color = heat_color(scale.place(value.of(pixels[i])));
       std::copy(color.begin(), color.end(), rgb.begin() + static_cast<std::ptrdiff_t>(3 * i));
     }
     shading::write_png_bytes(folder / fmt::format("heat_{}.png", value.name), width, height, rgb);

@@ -1,11 +1,14 @@
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <string_view>
 
 #include <fmt/format.h>
 
 #include "report/compare/comparison.h"
 #include "report/text/fit_lines.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::report {
 
@@ -30,12 +33,18 @@ std::string name_text(std::string name) {
   return name;
 }
 
+/// Four digits and more as 40,568, and others with so many digits that count.
+std::string compact(double value, int digits) {
+  return value >= 999.5 && value < 0x1p53 ? grouped(static_cast<std::uint64_t>(value + 0.5))
+                                          : fmt::format("{:.{}g}", value, digits);
+}
+
 std::string value_text(const ComparedRow& row, std::size_t run) {
   const std::optional<double>& value = row.values[run];
   if (!value) return "-";
   if (row.unit == "share") return percent(*value);
   if (row.unit == "bytes") return bytes_text(static_cast<std::uint64_t>(*value));
-  return std::abs(*value) >= 1e6 ? scaled(*value) : fmt::format("{:.4g}", *value);
+  return std::abs(*value) >= 1e6 ? scaled(*value) : compact(*value, 4);
 }
 
 std::string ratio_text(const ComparedRow& row, std::size_t run) {
@@ -43,7 +52,7 @@ std::string ratio_text(const ComparedRow& row, std::size_t run) {
     if (!row.values[run] || !row.values[0]) return "-";
     return fmt::format("{:+.1f}", 100 * (*row.values[run] - *row.values[0]));
   }
-  return row.ratios[run] ? fmt::format("x{:.3g}", *row.ratios[run]) : "-";
+  return row.ratios[run] ? "x" + compact(*row.ratios[run], 3) : "-";
 }
 
 /// The runs whose cycles another seed may make as many as the first run's.
@@ -90,6 +99,15 @@ std::string texts_of(const std::vector<ComparedText>& list) {
   return out;
 }
 
+/// A line a fact, below one another.
+std::string facts_of(const std::string& text) {
+  constexpr std::string_view kBetween = "; ";
+  std::string out = singular(text);
+  for (std::size_t at = out.find(kBetween); at != out.npos; at = out.find(kBetween, at))
+    out.replace(at, kBetween.size(), "\n" + std::string(18, ' '));
+  return out;
+}
+
 /// Counts the keys that differ, those too that the pattern hides.
 std::string keys_text(std::size_t shown, std::size_t hidden) {
   const std::size_t all = shown + hidden;
@@ -128,7 +146,7 @@ std::string comparison_table(const Comparison& c, bool all) {
   for (const ComparedText& text : c.texts)
     for (std::size_t r = 0; r < runs; ++r)
       out += fmt::format("{:<13}  {}  {}\n", r == 0 ? text.name : "", letter(r),
-                         text.texts[r].empty() ? "-" : text.texts[r]);
+                         text.texts[r].empty() ? "-" : facts_of(text.texts[r]));
   out += noise_text(c) + '\n';
   for (const ComparedSection& section : c.sections) out += section_text(section, c);
   if (!c.configuration.empty()) out += "configuration\n" + texts_of(c.configuration) + '\n';

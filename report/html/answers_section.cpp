@@ -1,6 +1,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -53,61 +56,125 @@ Html limits_card(const Json& report) {
   return out;
 }
 
-void reason(Html& out, const std::string& text) {
-  out += markup("<li>{}</li>\n", text);
+/// What a sentence of the card is about.
+enum class Topic : std::uint8_t { kRays, kTests, kLinks, kMemory, kPackets, kShading };
+
+Topic topic_of(std::string_view part) {
+  constexpr std::pair<std::string_view, Topic> kWords[] = {
+      {"shading", Topic::kShading},  {"link", Topic::kLinks},   {"ring", Topic::kLinks},
+      {"memory", Topic::kMemory},    {"dram", Topic::kMemory},  {"l2_", Topic::kMemory},
+      {"l1_", Topic::kMemory},       {"shape", Topic::kMemory}, {"fetch", Topic::kMemory},
+      {"dispatch", Topic::kPackets}, {"pack", Topic::kPackets}, {"collection", Topic::kPackets},
+      {"ray_slots", Topic::kRays}};
+  for (const auto& [word, topic] : kWords)
+    if (part.find(word) != part.npos) return topic;
+  return Topic::kTests;
 }
 
-/// The numbers that stand behind a verdict: parts that are busy, and causes of waiting.
-Html why_card(const Json& report) {
-  Html out;
+struct WhySentence {
+  Topic topic;
+  std::string text;
+};
+
+std::string bound_words(const Json& report) {
   const Json* bound = find(report, "bound.classes");
-  if (bound && !bound->empty())
-    reason(out, fmt::format("By itself, {} would allow {:.1f} rays in 1,000 cycles; the run reached {} of that.",
-                            words(text_at(bound->front(), "name")), number_at(bound->front(), "rays_per_kilocycle"),
-                            percent(number_at(report, "bound.reached"))));
+  if (!bound || bound->empty()) return {};
+  const std::string part = text_at(bound->front(), "name");
+  return fmt::format("By {}, {} would allow {} rays in 1,000 cycles{}; the run reached {} of that.",
+                     part.ends_with("s") ? "themselves" : "itself", words(part),
+                     value_text(bound->front().value("rays_per_kilocycle", Json(0))),
+                     part == "link_bandwidth" ? ", if all links carried as much" : "",
+                     percent(number_at(report, "bound.reached")));
+}
+
+/// The use of the box units, and the two things that testers wait for most.
+std::string tester_words(const Json& report) {
   const double cycles = number_at(report, "engine.cycles");
   const Json* resources = find(report, "resources");
-  if (cycles > 0 && resources && !resources->empty() && resources->front().contains("units")) {
-    const std::size_t testing = resources_with_units(report.value("config", Json::object()), resources->size());
-    const double all = cycles * static_cast<double>(testing);
-    struct Wait {
-      const char *key, *text;
-      double amount;
-    };
-    Wait waits[] = {{"memory", "shape data", 0},
-                    {"link", "a place in a link", 0},
-                    {"credits", "a packet of their own", 0},
-                    {"storage", "a free block", 0},
-                    {"idle", "rays", 0}};
-    double busy = 0;
-    for (std::size_t i = 0; i < testing; ++i) {
-      const Json* unit = find((*resources)[i], "units.box");
-      if (!unit) continue;
-      busy += number_at(*unit, "busy") / all;
-      for (Wait& wait : waits) wait.amount += number_at(*unit, wait.key) / all;
+  if (cycles <= 0 || !resources || resources->empty() || !resources->front().contains("units")) return {};
+  const std::size_t testing = resources_with_units(report.value("config", Json::object()), resources->size());
+  const double all = cycles * static_cast<double>(testing);
+  struct Wait {
+    const char *key, *text;
+    double amount;
+  };
+  Wait waits[] = {{"latency", "their pipelines", 0}, {"memory", "shape data", 0},
+                  {"link", "a place in a link", 0},  {"credits", "a packet of their own", 0},
+                  {"storage", "a free block", 0},    {"idle", "rays", 0}};
+  double busy = 0;
+  for (std::size_t i = 0; i < testing; ++i) {
+    const Json* unit = find((*resources)[i], "units.box");
+    if (!unit) continue;
+    busy += number_at(*unit, "busy") / all;
+    for (Wait& wait : waits) wait.amount += number_at(*unit, wait.key) / all;
+  }
+  std::sort(std::begin(waits), std::end(waits), [](const Wait& a, const Wait& b) { return a.amount > b.amount; });
+  std::string text = fmt::format("Box units are busy in {} of the cycles", percent(busy));
+  if (waits[0].amount > 0.005)
+    text += fmt::format(", and testers wait for {} in {}", waits[0].text, percent(waits[0].amount));
+  if (waits[1].amount > 0.005) text += fmt::format(", for {} in {}", waits[1].text, percent(waits[1].amount));
+  return text + ".";
+}
+
+std::string memory_words(const Json& report) {
+  if (!find(report, "memory.dram_utilisation")) return {};
+  std::string text =
+      fmt::format("DRAM moves data in {} of the cycles", percent(number_at(report, "memory.dram_utilisation")));
+  if (const Json* channels = find(report, "memory.dram.channels")) {
+    double asked = 0, conflicts = 0;
+    for (const Json& channel : *channels) {
+      asked += number_at(channel, "reads") + number_at(channel, "writes");
+      conflicts += number_at(channel, "row_conflicts");
     }
-    std::sort(std::begin(waits), std::end(waits), [](const Wait& a, const Wait& b) { return a.amount > b.amount; });
-    std::string text = fmt::format("Box units work in {} of the cycles", percent(busy));
-    if (waits[0].amount > 0.005)
-      text += fmt::format(", and testers wait for {} in {}", waits[0].text, percent(waits[0].amount));
-    if (waits[1].amount > 0.005) text += fmt::format(", for {} in {}", waits[1].text, percent(waits[1].amount));
-    reason(out, text + ".");
+    if (asked > 0)
+      text += fmt::format(", {} of its accesses find their row open and {} another one",
+                          percent(number_at(report, "memory.dram.row_hit_fraction")), percent(conflicts / asked));
   }
-  if (find(report, "memory.dram_utilisation")) {
-    std::string text =
-        fmt::format("DRAM moves data in {} of the cycles", percent(number_at(report, "memory.dram_utilisation")));
-    if (const Json* caches = find(report, "memory.caches"); caches && !caches->empty())
-      text +=
-          fmt::format("; {} of the lines asked for are in the L2", percent(number_at(caches->front(), "hit_fraction")));
-    reason(out, text + ".");
-  }
-  if (find(report, "packets.rays_mean"))
-    reason(out, fmt::format(
-                    "A packet holds {:.1f} rays, and finds rays of its own at {} of the resources that it visits.",
+  double lines = 0, hits = 0;
+  if (const Json* caches = find(report, "memory.caches"))
+    for (const Json& cache : *caches) {
+      lines += number_at(cache, "lines");
+      hits += number_at(cache, "hits");
+    }
+  if (lines > 0) text += fmt::format("; {} of the lines asked for are in the L2", percent(hits / lines));
+  if (number_at(report, "memory.shape_buffers.misses") > 0)
+    text += fmt::format(", {} of the shapes in the shape buffers",
+                        percent(number_at(report, "memory.shape_buffers.hit_fraction")));
+  return text + ".";
+}
+
+/// The numbers that stand behind a verdict: parts that are busy, and causes of waiting. Those of the part that limits
+/// the machine, or that is tightest, come first.
+Html why_card(const Json& report) {
+  std::vector<WhySentence> reasons;
+  const auto add = [&](Topic topic, const std::string& text) {
+    if (!text.empty()) reasons.push_back({topic, text});
+  };
+  add(Topic::kRays, longest_stages(report));
+  add(Topic::kTests, tester_words(report));
+  add(Topic::kMemory, memory_words(report));
+  if (const BusiestLink link = busiest_link(report); link.use > 0.5 || link.use > 2 * link.mean)
+    add(Topic::kLinks, link.text);
+  if (number_at(report, "packets.issued") > 0)
+    add(Topic::kPackets,
+        fmt::format("A packet holds {:.1f} rays, and finds rays of its own at {} of the resources that "
+                    "it visits.",
                     number_at(report, "packets.rays_mean"), percent(1 - number_at(report, "packets.bubble_fraction"))));
   if (find(report, "shading.utilisation"))
-    reason(out, fmt::format("Shader workers are busy in {} of the cycles.",
-                            percent(number_at(report, "shading.utilisation"))));
+    add(Topic::kShading,
+        fmt::format("Shader workers are busy in {} of the cycles.", percent(number_at(report, "shading.utilisation"))));
+  std::string part = text_at(report, "bottleneck.limits");
+  if (const Json* bound = find(report, "bound.classes"); part.empty() && bound && !bound->empty())
+    part = text_at(bound->front(), "name");
+  std::stable_partition(reasons.begin(), reasons.end(),
+                        [&](const WhySentence& reason) { return !part.empty() && reason.topic == topic_of(part); });
+  // On one screen: what else is known stands behind the tabs.
+  constexpr std::size_t kMost = 4;
+  if (reasons.size() > kMost) reasons.resize(kMost);
+  Html out;
+  const auto item = [&](const std::string& text) { out += markup("<li>{}</li>\n", text); };
+  if (const std::string bound = bound_words(report); !bound.empty()) item(bound);
+  for (const WhySentence& reason : reasons) item(reason.text);
   return out.empty() ? out : markup("<ul>\n{}</ul>\n", out);
 }
 
@@ -120,6 +187,9 @@ Html change_card(const Json& report) {
           "<p>First the picture: at least {} paths, or fewer ray slots, so that the machine is full for most "
           "of the run.</p>\n",
           value_text(*least));
+    const BusiestLink link = busiest_link(report);
+    if (find(report, "bottleneck"))
+      out += markup("<p>The gain of a change was not measured.{}</p>\n", link.use > 0.9 ? " " + link.text : "");
     return out;
   }
   std::string sets;
@@ -146,6 +216,8 @@ Html cost_card(const Json& report) {
                              number_at(report, "config.engine.clock_mhz")));
   else if (const double speed = number_at(report, "host.rays_per_second"); speed > 0)
     item("Time", fmt::format("{:.0f} ns on this host ({}rays/s)", 1e9 / speed, scaled(speed)));
+  if (const double latency = number_at(report, "ray_time.latency"); latency > 0)
+    item("Latency", fmt::format("{} cycles until it is shaded", value_text(Json(latency))));
   if (find(report, "tests.box.per_ray"))
     item("Tests", fmt::format("{:.1f} boxes, {:.1f} triangles", number_at(report, "tests.box.per_ray"),
                               number_at(report, "tests.triangle.per_ray")));

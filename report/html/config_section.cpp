@@ -24,6 +24,30 @@ void add_differences(Table& table, const std::string& path, const Json& config, 
 
 }  // namespace
 
+Html charges_section(const Json& report) {
+  const Json *charges = find(report, "charges"), *ignored = find(report, "ignored_keys");
+  Html out;
+  if (charges && !charges->empty()) {
+    Table table{"charges-table", "What costs nothing in this run", {{"what"}, {"meaning"}, {"key"}, {"charged by"}}};
+    for (const Json& charge : *charges) {
+      const std::string key = text_at(charge, "key"), set = text_at(charge, "set");
+      table.rows.push_back({cell(words(text_at(charge, "name"))), cell(text_at(charge, "meaning")),
+                            cell(key.empty() ? "none" : key), cell(set.empty() ? "–" : "--set " + set)});
+    }
+    out += markup(
+               "<p>Some work of this machine costs no cycles. <code>--charge-all</code> charges all that has a "
+               "key.</p>\n") +
+           table.html();
+  }
+  if (ignored && !ignored->empty()) {
+    Table table{"ignored-table", "Keys that are set and have no effect in this run", {{"key"}}};
+    for (const Json& key : *ignored)
+      table.rows.push_back({cell(key.is_string() ? key.get<std::string>() : key.dump())});
+    out += table.html();
+  }
+  return out;
+}
+
 Html configuration_section(const Json& report) {
   const Json* config = find(report, "config");
   if (!config || config->empty()) return {};

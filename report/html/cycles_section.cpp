@@ -89,7 +89,7 @@ void add_units(Table& table, const Json& resources, std::size_t testing, double 
   }
   for (const auto& [kind, shares] : kinds)
     if (shares[0] > 0) add(table, words(kind) + (kind == "ray_reads" ? "" : " units"), shares);
-  add(table, "dispatch", busy_and_idle(dispatch));
+  if (dispatch > 0) add(table, "dispatch", busy_and_idle(dispatch));
 }
 
 Table parts_table(const Json& report) {
@@ -121,6 +121,12 @@ Table parts_table(const Json& report) {
 }
 
 }  // namespace
+
+std::string use_words(std::string_view key) {
+  for (const Use& use : kUses)
+    if (key == use.key) return use.title;
+  return {};
+}
 
 Html still_cycles(const Json& report) {
   const Table parts = parts_table(report);

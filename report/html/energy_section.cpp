@@ -89,14 +89,14 @@ Html over_time(const Json& report) {
   for (const Json& row : *rows)
     if (text_at(row, "unit") == "J") parts.push_back(text_at(row, "quantity"));
   if (parts.empty()) return {};
-  return Figure{
-      .id = "fig-energy-time",
-      .kind = "series",
-      .tables = "J",
-      .title = fmt::format("Energy over time: joules in each {:g} cycles", number_at(report, "time_series.interval")),
-      .label = fmt::format("Curves over time: {}. The table of rows over time has least, mean and greatest.",
-                           fmt::join(parts, ", ")),
-      .height = 340}
+  return Figure{.id = "fig-energy-time",
+                .kind = "series",
+                .tables = "J",
+                .title = fmt::format("Energy over time, in each {} cycles",
+                                     value_text(Json(number_at(report, "time_series.interval")))),
+                .label = fmt::format("Curves over time: {}. The table of rows over time has least, mean and greatest.",
+                                     fmt::join(parts, ", ")),
+                .height = 340}
       .html();
 }
 

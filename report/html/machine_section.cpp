@@ -4,6 +4,7 @@
 
 #include "report/html/html.h"
 #include "report/html/run_sections.h"
+#include "report/text/number_text.h"
 
 namespace carousel::report::html {
 
@@ -39,7 +40,36 @@ Html rank_table(const char* key, const char* title, const Json& report, const Js
   return table_of(key, title, rows, *find(schema, fmt::format("properties.{}.items", key)), left_out).html();
 }
 
+/// An end of a link, in words.
+std::string end_words(const Json& report, double end) {
+  const auto at = static_cast<std::size_t>(end);
+  if (const Json* nodes = find(report, "drawing"); nodes && at < nodes->size()) return text_at((*nodes)[at], "name");
+  const double resources = number_at(report, "config.topology.resources");
+  if (end < resources) return fmt::format("resource {}", at);
+  if (text_at(report, "config.topology.shape") == "bus") return "the bus";
+  return fmt::format("bridge {}", at - static_cast<std::size_t>(resources));
+}
+
 }  // namespace
+
+BusiestLink busiest_link(const Json& report) {
+  const Json* links = find(report, "links");
+  if (!links || links->empty() || !links->front().contains("utilisation")) return {};
+  const Json& busiest = greatest(*links, "utilisation");
+  double sum = 0;
+  for (const Json& link : *links) sum += number_at(link, "utilisation");
+  BusiestLink out{number_at(busiest, "utilisation"), sum / static_cast<double>(links->size()), ""};
+  constexpr double kAlike = 1.02;
+  if (links->size() > 1 && out.use <= kAlike * out.mean)
+    out.text = fmt::format("Each link moves packets in {} of the cycles.", percent(out.mean));
+  else
+    out.text = fmt::format(
+        "Of the links, that from {} to {} is busiest: it moves packets in {} of the cycles, where a link does in {} in "
+        "the mean.",
+        end_words(report, number_at(busiest, "from")), end_words(report, number_at(busiest, "to")), percent(out.use),
+        percent(out.mean));
+  return out;
+}
 
 Html machine_section(const Json& report, const Json& schema) {
   const Json* resources = find(report, "resources");
@@ -103,6 +133,7 @@ Html machine_section(const Json& report, const Json& schema) {
       table.rows[i].insert(table.rows[i].begin() + ends, share(use));
     }
     tables += table.html();
+    if (timed) out += markup("<p>{}</p>\n", busiest_link(report).text);
   }
   if (tables.empty()) return {};
   if (text_at(report, "config.topology.shape") == "central") return out + still_machine(report) + tables;

@@ -66,7 +66,7 @@ std::string gzipped(std::string_view bytes) {
   return out;
 }
 
-Html packed_series(const Json& time_series) {
+Html packed_series(const Json& time_series, const char* id) {
   Json head = time_series;
   std::string block;
   for (Json& row : head["rows"]) {
@@ -76,8 +76,8 @@ Html packed_series(const Json& time_series) {
     row.erase("values");
     row["words"] = ints ? "int" : "float";
   }
-  return json_script("series-head", head) +
-         markup("<script type=\"application/octet-stream\" id=\"series-words\">{}</script>\n", base64(gzipped(block)));
+  return json_script(std::string(id) + "-head", head) +
+         markup("<script type=\"application/octet-stream\" id=\"{}-words\">{}</script>\n", id, base64(gzipped(block)));
 }
 
 }  // namespace carousel::report::html

@@ -18,7 +18,8 @@ std::string gzipped(std::string_view bytes);
 /// The script elements with the time series of a report: a head in JSON, and all samples in one block, gzipped, in
 /// base64. A row is `samples` words of 32 bits, each the difference from the word before it (modulo 2^32), with the
 /// lowest bytes of all words first, then the next ones: equal bytes then stand together. The words are whole numbers
-/// (`int`) if all of the row are, otherwise floats (`float`). web/src/series.js unpacks it.
-Html packed_series(const nlohmann::ordered_json& time_series);
+/// (`int`) if all of the row are, otherwise floats (`float`). web/src/series.js unpacks it. The elements are `id`-head
+/// and `id`-words; any head with `samples` and `rows` that have `values` may be packed so.
+Html packed_series(const nlohmann::ordered_json& time_series, const char* id = "series");
 
 }  // namespace carousel::report::html

@@ -10,7 +10,7 @@
 
 namespace carousel::report::html {
 
-std::string run_page(const Json& report, const Picture& picture, const Picture& heat, const Json* versus) {
+std::string run_page(const Json& report, const Picture& picture, const HeatMap& heat, const Json* versus) {
   const Json schema = report_schema();
   // The list of all sections, in their order, each with its tab.
   const std::vector<Section> sections{
@@ -34,6 +34,7 @@ std::string run_page(const Json& report, const Picture& picture, const Picture& 
       {"heat", "Slow pixels", heat_section(report, schema, heat), "Rays"},
       {"verdict", "This run", verdict_section(report), "This run"},
       {"accuracy", "Correctness", accuracy_section(report, schema), "This run"},
+      {"charges", "Not charged", charges_section(report), "This run"},
       {"configuration", "Configuration", configuration_section(report), "This run"},
       {"values", "Every value", values_section(report, schema), "This run"},
   };
@@ -49,7 +50,7 @@ std::string run_page(const Json& report, const Picture& picture, const Picture& 
   if (const double frames = number_at(report, "frames.count"); frames > 0)
     machine += fmt::format("; a series of {} frames, of which this page shows the last", frames);
   return page_of(scene.empty() ? "Carousel: synthetic traffic" : "Carousel: " + scene, machine, sections, facts,
-                 series ? packed_series(*series) : Html());
+                 (series ? packed_series(*series) : Html()) + packed_heat(report, heat));
 }
 
 }  // namespace carousel::report::html

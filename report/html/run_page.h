@@ -8,9 +8,15 @@
 
 namespace carousel::report::html {
 
+/// What the rays of each pixel took.
+struct HeatMap {
+  Picture picture;     ///< their cycles, few dark; shown without scripts
+  std::string rows{};  ///< heat.csv, as `carousel run --heat` writes it; empty: there is none
+};
+
 /// report.html of a run, from its report.json. Also for reports of older programs: sections whose numbers are missing
 /// are left out. `versus`, if not null, is versus.json of the same machine (is_of_run()).
-std::string run_page(const nlohmann::ordered_json& report, const Picture& picture, const Picture& heat = {},
+std::string run_page(const nlohmann::ordered_json& report, const Picture& picture, const HeatMap& heat = {},
                      const nlohmann::ordered_json* versus = nullptr);
 
 /// True if a run of `versus` is that of `report`: its machine had the same hits, in as many cycles.

@@ -1,11 +1,13 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json.hpp>
 
 #include "report/html/page.h"
+#include "report/html/run_page.h"
 #include "report/html/still.h"
 
 namespace carousel::report::html {
@@ -22,8 +24,11 @@ Html sampled_section(const nlohmann::ordered_json& report, const nlohmann::order
 Html machine_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html cycles_section(const nlohmann::ordered_json& report);
 Html ray_time_section(const nlohmann::ordered_json& report);
-/// `map`: of the pixels' cycles; there may be none.
-Html heat_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema, const Picture& map);
+/// A sentence: where a ray spends most of its cycles; nothing without ray_time.
+std::string longest_stages(const nlohmann::ordered_json& report);
+Html heat_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema, const HeatMap& map);
+/// The numbers of all pixels for web/src/heat_map.js; nothing if there are none, or more than a page should hold.
+Html packed_heat(const nlohmann::ordered_json& report, const HeatMap& map);
 Html waits_section(const nlohmann::ordered_json& report);
 Html gains_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html bytes_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
@@ -38,6 +43,8 @@ Html rays_section(const nlohmann::ordered_json& report, const nlohmann::ordered_
 Html tests_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html effects_section(const nlohmann::ordered_json& report);
 Html accuracy_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
+/// What costs nothing in this run, with the keys that charge it, and keys that have no effect in it.
+Html charges_section(const nlohmann::ordered_json& report);
 Html configuration_section(const nlohmann::ordered_json& report);
 Html values_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 
@@ -51,6 +58,16 @@ std::string phases_text(const nlohmann::ordered_json& report);
 std::vector<StillGain> still_gains_of(const nlohmann::ordered_json& report);
 /// The use of the cycles by kind of part, as bars.
 Html still_cycles(const nlohmann::ordered_json& report);
+
+/// The link that is used most, the mean of all links, and both in a sentence; no text without such numbers.
+struct BusiestLink {
+  double use = 0, mean = 0;
+  std::string text{};
+};
+BusiestLink busiest_link(const nlohmann::ordered_json& report);
+
+/// A use of a unit's cycles as charts name it, such as "waits for memory" for `memory`; nothing for others.
+std::string use_words(std::string_view key);
 
 /// The machine against its conventional twin.
 Html twin_card(const nlohmann::ordered_json& versus);

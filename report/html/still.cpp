@@ -290,7 +290,7 @@ Html still_machine(const Json& report) {
     lines += arrow(from, to, beside, scale_colour(link_uses[i] / most), width);
   }
   const Json* names = find(report, "drawing");
-  const bool valued = uses.size() <= 32;
+  const bool valued = uses.size() <= 100;
   for (std::size_t i = 0; i < at.size(); ++i) {
     const bool hub = i >= places.resources;
     std::string name = hub ? fmt::format("B{}", i - places.resources) : std::to_string(i);

@@ -20,8 +20,8 @@ Html distribution(const Json& report, const std::string& path, const std::string
     table.rows.push_back({cell(row["from"] == row["to"] ? value_text(row["from"])
                                                         : value_text(row["from"]) + " to " + value_text(row["to"])),
                           cell(row["count"]), share(number_at(row, "count") / number_at(*found, "count"))});
-  return markup("<p>{}: the mean is {:.1f} cycles, the greatest {}.</p>\n", title, number_at(*found, "mean"),
-                value_text((*found)["max"])) +
+  return markup("<p>{}: the mean is {} cycles, the greatest {}.</p>\n", title,
+                value_text(Json(number_at(*found, "mean"))), value_text((*found)["max"])) +
          Figure{.id = "fig-" + id,
                 .kind = "histogram",
                 .tables = id,
@@ -147,7 +147,7 @@ Html latency_section(const Json& report) {
 
 Html collections_section(const Json& report, const Json& schema) {
   const Json* collections = find(report, "collections");
-  if (!collections) return {};
+  if (!collections || number_at(*collections, "created", 1) == 0) return {};
   Html out;
   if (const Json* fullness = find(*collections, "fullness_mean"))
     out += markup("<p>A packet was {} full when it was issued.</p>\n", percent(fullness->get<double>()));

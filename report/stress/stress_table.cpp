@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::report {
 
@@ -61,8 +62,8 @@ void inside(const Stress& s, std::string& out) {
 }  // namespace
 
 std::string stress_table(const Stress& s) {
-  std::string out = fmt::format("{} cores, {} repetitions of each, in turn, {}{}\n", s.cores, s.repetitions,
-                                seconds_text(s.seconds), s.incomplete ? ", incomplete" : "");
+  std::string out = singular(fmt::format("{} cores, {} repetitions of each, in turn, {}{}\n", s.cores, s.repetitions,
+                                         seconds_text(s.seconds), s.incomplete ? ", incomplete" : ""));
   alone(s, out);
   inside(s, out);
   const bool found = std::any_of(s.rows.begin(), s.rows.end(), [](const StressRow& row) { return !row.found.empty(); });

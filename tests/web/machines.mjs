@@ -9,7 +9,10 @@ export const pages = {
   // `drawn`: charts that must be there; others are left out where there is too little to show.
   machine: {...machine('demo', [...cycle, 'image.width=48', 'image.height=48', 'engine.what_if=true', 'topology.resources=2', 'rays.slots_per_resource=4', 'cull_planes.count=2',
     'verify=reference', 'faults={links: {drop: 0.02, delay: 0.02}, compare: true}', 'energy.profile=n45']),
-    drawn: ['fig-energy', 'fig-area', 'fig-ray-time']},
+    drawn: ['fig-energy', 'fig-area', 'fig-ray-time', 'fig-ray-time-kinds']},
+  // A picture wider than a phone, with the costs of its pixels.
+  slow_pixels: {...machine('demo', [...cycle, 'image.width=480', 'image.height=3', 'topology.resources=2']), options: ['--heat', 'log'],
+    drawn: ['fig-ray-time-kinds']},
   native: machine('bundle_tester', [...small, 'engine.kind=native', 'primary=raster']),
   ranks: {...machine('demo', [...small, 'engine.kind=native', 'engine.threads=2', 'engine.transport=mpi', 'topology.resources=6']),
     ranks: 3},
@@ -27,8 +30,8 @@ export const pages = {
   compare: {command: 'compare', of: ['machine', 'native']},
 };
 
-// Where there is little time: the page with most sections, and one whose charts are of points.
-export const shortly = ['machine', 'sweep'];
+// Where there is little time: the page with most sections, one with a map of pixels, and one whose charts are of points.
+export const shortly = ['machine', 'slow_pixels', 'sweep'];
 
 export const all = {
   ...pages,

@@ -2,9 +2,9 @@
 // Every kind of page, or with `all` also the pages of a dozen machines; with CAROUSEL_EFFORT below 1 few kinds. On a phone, on a large screen, dark, and without
 // scripts: no message on the console, marks in every chart, the JSON's numbers in tables and charts, and no violation that
 // axe-core finds. Exit status 1 and a line for each fault.
-import {mkdtemp, rm, stat} from 'node:fs/promises';
+import {mkdtemp, readFile, rm, stat} from 'node:fs/promises';
 import {tmpdir} from 'node:os';
-import {join, resolve} from 'node:path';
+import {dirname, join, resolve} from 'node:path';
 
 import {chromiumOf} from './chromium.mjs';
 import {all, pages, shortly} from './machines.mjs';
@@ -95,6 +95,36 @@ async function judge(where, page, rules) {
   for (const v of violations) fault(where, `axe-core: ${v.id}: ${v.help}: ${v.nodes[0].target} ${v.nodes[0].failureSummary}`);
 }
 
+/** The map of the pixels: a click, and a typed place, tell the numbers of that pixel, which heat.csv has. */
+async function tryHeatMap(where, page, file) {
+  const rows = (await readFile(join(dirname(file), 'heat.csv'), 'utf8')).trim().split('\n').slice(1).map((row) => row.split(',').map(Number));
+  const told = () => page.innerText('#heat-map [role=status]');
+  const expectPixel = async (how, [x, y, rays, cycles, tests]) => {
+    const text = await told();
+    for (const needed of [`Pixel ${x}, ${y}: ${cycles.toLocaleString('en')} cycles of ${rays} `, ` ${tests.toLocaleString('en')} test${tests === 1 ? ',' : 's'}`, `--pixel ${x},${y}`])
+      if (!text.includes(needed)) fault(where, `${how} the map lacks "${needed}": ${text}`);
+  };
+  await expectPixel('at first', rows.reduce((a, b) => (b[3] > a[3] ? b : a)));
+  const [width, height] = [rows.at(-1)[0] + 1, rows.at(-1)[1] + 1], [x, y] = [Math.floor(width / 3), height - 1];
+  const box = await page.locator('#heat-map canvas').first().boundingBox();
+  await page.locator('#heat-map canvas').first().click({position: {x: ((x + 0.5) * box.width) / width, y: ((y + 0.5) * box.height) / height}});
+  await expectPixel('after a click', rows[y * width + x]);
+  await page.fill('#heat-map label:has-text("Column") input', '0');
+  await expectPixel('after a column', rows[y * width]);
+  // Another quantity and scale: the brightest pixel is that with most of it.
+  await page.selectOption('#heat-map select >> nth=0', 'tests');
+  await page.selectOption('#heat-map select >> nth=1', 'linear');
+  const brightest = await page.evaluate(() => {
+    const map = document.querySelector('#heat-map canvas'), {data} = map.getContext('2d').getImageData(0, 0, map.width, map.height);
+    let best = 0;
+    for (let i = 0; i < data.length; i += 4) if (data[i] + data[i + 1] + data[i + 2] > data[best] + data[best + 1] + data[best + 2]) best = i;
+    return best / 4;
+  });
+  if (rows[brightest][4] !== Math.max(...rows.map((row) => row[4]))) fault(where, `the brightest pixel of tests is ${rows[brightest].slice(0, 2)}`);
+  const scale = await page.innerText('#heat-map .ticks');
+  if (!scale.includes('tests')) fault(where, `the scale has no unit: ${scale}`);
+}
+
 // A page is loaded once with scripts and once without. Charts are drawn anew when the window or the colours change.
 async function look(browser, name, command, {page: file, json}) {
   const bytes = (await stat(file)).size;
@@ -114,15 +144,18 @@ async function look(browser, name, command, {page: file, json}) {
     await new Promise((done) => setTimeout(done, 50));
   }
   await check(`${name}, 1600 pixels, dark`, page, command, json);
+  if (json.heat) await tryHeatMap(`${name}, 1600 pixels`, page, file);
   await judge(`${name}, dark`, page, ['color-contrast', 'link-in-text-block']);  // the others are the same
   for (const text of told) fault(name, `console: ${text}`);
   await close();
 
-  const plain = await open(browser, file, {javaScriptEnabled: false});
+  const plain = await open(browser, file, {javaScriptEnabled: false, viewport: {width: 400, height: 800}});
   const where = `${name}, no scripts`;
   const text = await plain.page.locator('main').innerText();
   for (const needed of command === 'run' ? [json.digest.hits, 'The machine'] : ['At a glance'])
     if (needed && !text.includes(needed)) fault(where, `lacks ${needed}`);
+  const wide = await plain.page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+  if (wide > 0) fault(where, `the page is ${wide} pixels wider than the window`);
   if (await plain.page.locator('.plot:visible').count()) fault(where, 'shows empty charts');
   for (const line of plain.told) fault(where, `console: ${line}`);
   await plain.close();

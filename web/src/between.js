@@ -1,4 +1,5 @@
 // Sliders over the grid of a sweep: the results between its points, and with `carousel serve` the run of a point itself.
+import {full} from './look.js';
 import {readTable} from './table.js';
 
 const isNumber = (value) => typeof value === 'number';
@@ -78,7 +79,7 @@ function controlOf({key, values, numeric, ...scale}, change) {
   return row;
 }
 
-const shown = (value) => (isNumber(value) ? String(Number(value.toPrecision(5))) : '–');
+const shown = (value) => (isNumber(value) ? full(Number(value.toPrecision(5))) : '–');
 
 /** A row a result: its value between the points, and as simulated. */
 function tableOf(results) {

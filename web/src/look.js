@@ -42,6 +42,17 @@ export function short(value) {
   return `${Number(value.toPrecision(3))}`;
 }
 
+/** The prefix of a unit in which `most` is at least 1, and its factor: micro for 0.000007. */
+export function prefixOf(most) {
+  return [[1, ''], [1e-3, 'm'], [1e-6, 'µ'], [1e-9, 'n']].find(([factor]) => most >= factor) ?? [1e-12, 'p'];
+}
+
+/** The lines that a legend takes, with names of some 7 pixels a letter. */
+export function legendLines(list, width) {
+  return list.map((name) => 42 + 7 * name.length)
+    .reduce(([full, at], wide) => (at + wide > width - 10 ? [full + 1, wide] : [full, at + wide]), [1, 0])[0];
+}
+
 export const full = (value) =>
   value !== 0 && Math.abs(value) < 1e-3 ? `${Number(value.toPrecision(4))}` : value.toLocaleString('en', {maximumFractionDigits: 4});
 
@@ -96,6 +107,6 @@ export function names(colours, list, width) {
   return axis(colours, {
     type: 'category', data: list, inverse: true, axisTick: {show: false}, splitLine: {show: false},
     axisLabel: {interval: list.length > 40 ? 'auto' : 0, ...(width < 600 ? {fontSize: 10} : {}),
-      ...(long ? {width: most, overflow: 'break', lineHeight: 11, lineOverflow: 'truncate', height: 24} : {})},
+      ...(long ? {width: most, overflow: 'break', lineHeight: 13, lineOverflow: 'truncate', height: 28} : {})},
   });
 }

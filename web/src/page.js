@@ -15,9 +15,10 @@ import {curves, parts} from './charts/over_time.js';
 import {quantiles} from './charts/quantiles.js';
 import {scatter} from './charts/scatter.js';
 import {spans} from './charts/spans.js';
-import {stacked} from './charts/stacked.js';
+import {amounts, stacked} from './charts/stacked.js';
 import {sweepEffects, sweepPareto, sweepPlot} from './charts/sweep.js';
 import {between} from './between.js';
+import {heatMap} from './heat_map.js';
 import {look} from './look.js';
 import {sweepTable} from './sweep_table.js';
 import {readTable} from './table.js';
@@ -27,7 +28,7 @@ echarts.use([BarChart, CustomChart, GraphChart, HeatmapChart, LineChart, SankeyC
 
 // A kind of chart: a function of its context that gives the option of ECharts, or {option, connect}, at once or later.
 const kinds = {
-  bars, intervals, stacked, quantiles, flow, groups, shares, ratios, heat, histogram, machine, scatter, spans,
+  amounts, bars, intervals, stacked, quantiles, flow, groups, shares, ratios, heat, histogram, machine, scatter, spans,
   series: (context) => curves({...context, name: context.names}),
   parts_over_time: parts,
   sweep_plot: sweepPlot, sweep_pareto: sweepPareto, sweep_effects: sweepEffects,
@@ -174,6 +175,7 @@ const showTab = tabs();
 themeButton();
 sweepTable(facts);
 between(facts);
+const drawHeatMap = heatMap();
 const figures = document.querySelectorAll('figure[data-chart]');
 const seen = new IntersectionObserver((entries) => {
   for (const {isIntersecting, target} of entries) {
@@ -198,6 +200,7 @@ addEventListener('beforeprint', () => {
   const closed = [...document.querySelectorAll('details:not([open])')];
   showTab('all');
   for (const details of closed) details.open = true;
+  drawHeatMap();
   figures.forEach((figure) => { if (!drawn.has(figure)) draw(figure); });
   addEventListener('afterprint', () => {
     for (const details of closed) details.open = false;
@@ -209,5 +212,6 @@ addEventListener('beforeprint', () => {
 window.carouselCharts = async () => {
   showTab('all');
   for (const figure of figures) if (!drawn.get(figure)?.chart) await draw(figure);
+  await drawHeatMap();
   return Object.fromEntries([...drawn].map(([figure, {chart}]) => [figure.id, chart]));
 };

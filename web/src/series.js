@@ -8,13 +8,14 @@ export function hasSeries() {
 
 /** {unit, interval, samples, rows: [{part, quantity, unit, values}]}; values is an Int32Array or a Float32Array. */
 export function series() {
-  unpacked ??= unpack();
+  unpacked ??= unpack('series');
   return unpacked;
 }
 
-async function unpack() {
-  const head = JSON.parse(document.getElementById('series-head').textContent);
-  const packed = Uint8Array.from(atob(document.getElementById('series-words').textContent), (c) => c.charCodeAt(0));
+/** What the page holds packed under this name: its head, and the values of its rows. */
+export async function unpack(name) {
+  const head = JSON.parse(document.getElementById(`${name}-head`).textContent);
+  const packed = Uint8Array.from(atob(document.getElementById(`${name}-words`).textContent), (c) => c.charCodeAt(0));
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
   const bytes = new Uint8Array(await new Response(stream).arrayBuffer());
   const n = head.samples;

@@ -6,6 +6,7 @@
 
 #include "report/html/html.h"
 #include "report/html/page.h"
+#include "report/html/run_sections.h"
 
 namespace carousel::report::html {
 
@@ -63,6 +64,15 @@ Cell ratio_of(const ComparedRow& row, std::size_t run, bool noise) {
              : cell("–");
 }
 
+/// The name of a row: of the test units' cycles "box other_units" as the page of a run has it, "box: other units work".
+std::string row_words(const std::string& section, const std::string& name) {
+  const std::size_t space = name.find(' ');
+  if (section == "cycles of the test units" && space != name.npos)
+    if (const std::string use = use_words(name.substr(space + 1)); !use.empty())
+      return words(name.substr(0, space)) + ": " + use;
+  return words(name);
+}
+
 Section section_of(const ComparedSection& section, std::size_t number, const Comparison& c) {
   const std::size_t runs = c.runs.size();
   Table table{fmt::format("section-{}", number), "Runs side by side: " + section.name, {{"quantity"}, {"unit"}}};
@@ -70,11 +80,11 @@ Section section_of(const ComparedSection& section, std::size_t number, const Com
   for (std::size_t r = 1; r < runs; ++r) table.columns.push_back({letter(r) + "/A"});
   bool shares = true, any_ratio = false;
   for (const ComparedRow& row : section.rows) {
-    auto& cells = table.rows.emplace_back(std::vector<Cell>{cell(words(row.name)), cell(row.unit)});
+    auto& cells = table.rows.emplace_back(std::vector<Cell>{cell(row_words(section.name, row.name)), cell(row.unit)});
     for (std::size_t r = 0; r < runs; ++r) cells.push_back(value_of(row, r));
     for (std::size_t r = 1; r < runs; ++r) {
       cells.push_back(ratio_of(row, r, c.within_noise[r].has_value()));
-      any_ratio |= row.unit != "share" && row.ratios[r] && *row.ratios[r] > 0;
+      any_ratio |= row.unit != "share" && row.ratios[r] && *row.ratios[r] > 0 && *row.ratios[r] != 1;
     }
     shares &= row.unit == "share";
   }
@@ -83,7 +93,7 @@ Section section_of(const ComparedSection& section, std::size_t number, const Com
     body = Figure{.id = "fig-" + table.id,
                   .kind = shares ? "shares" : "ratios",
                   .tables = table.id,
-                  .title = shares ? section.name + ": shares, run beside run" : section.name + ": ratio to run A",
+                  .title = capital(section.name) + (shares ? ": shares, run beside run" : ": ratio to run A"),
                   .label = "Bars, a group a row of the table below and a bar a run.",
                   .height = 100 + static_cast<int>((14 + 12 * runs) * std::min<std::size_t>(section.rows.size(), 40))}
                .html();

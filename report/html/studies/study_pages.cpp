@@ -73,14 +73,33 @@ Html bars_of(const Table& table, const std::string& title) {
          table.html();
 }
 
-/// A verdict of several sentences: the first is the headline, the others a line each.
-Html sentences_of(std::string text) {
+/// The levels to choose, of accuracy.json; nothing where none is safe.
+std::string advice_words(const Json& accuracy) {
+  const auto levels = [&](const char* clock) {
+    const Json* found = find(accuracy, fmt::format("recommended.{}", clock));
+    return !found || !found->is_object()
+               ? std::string()
+               : fmt::format("{} + {} + {}", words(text_at(*found, "triangle")), words(text_at(*found, "box")),
+                             words(text_at(*found, "transform")));
+  };
+  const std::string host = levels("host"), machine = levels("hardware");
+  if (host.empty() && machine.empty()) return {};
+  if (host == machine) return fmt::format("Safe for the least cost: {}.", host);
+  std::string out = host.empty() ? "" : fmt::format("Safe for the least cost on this host: {}.", host);
+  if (!machine.empty())
+    out += fmt::format("{}{}: {}.", out.empty() ? "Safe for the least cost " : " ",
+                       out.empty() ? "in hardware" : "In hardware", machine);
+  return out;
+}
+
+/// A verdict of several sentences: the first is the headline, unless there is one, the others a line each.
+Html sentences_of(std::string text, bool headline = true) {
   std::replace(text.begin(), text.end(), '\n', ' ');
   Html out;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t point = text.find(". ", begin), end = point == text.npos ? text.size() : point + 1;
     const std::string sentence = text.substr(begin, end - begin);
-    out += begin == 0 ? markup("<p class=\"verdict\">{}</p>\n", sentence) : markup("<p>{}</p>\n", sentence);
+    out += begin == 0 && headline ? markup("<p class=\"verdict\">{}</p>\n", sentence) : markup("<p>{}</p>\n", sentence);
     begin = end + 1;
   }
   return out;
@@ -148,7 +167,7 @@ std::string versus_page(const Json& versus) {
     if (const Json* trials = find(versus, std::string(search) + ".trials"))
       splits += table_of_rows(search, search == std::string("search") ? "Of this machine" : "Of the twin at equal area",
                               *trials,
-                              [](const Json& row) { return fmt::format("{} resources", row["resources"].get<int>()); },
+                              [](const Json& row) { return singular(fmt::format("{} resources", row["resources"].get<int>())); },
                               {"cycles", "nj_per_ray", "mm2"})
                     .html();
   Html glance;
@@ -190,7 +209,9 @@ std::string accuracy_page(const Json& accuracy) {
       "sampling", "Error of the picture over the number of samples", accuracy["sampling"]["rows"],
       [](const Json& row) { return singular(fmt::format("{} samples", number_at(row, "samples"))); }, {"rmse"});
   Html glance = interrupted(accuracy);
-  glance += sentences_of(text_at(accuracy, "verdict"));
+  if (const std::string advice = advice_words(accuracy); !advice.empty())
+    glance += markup("<p class=\"verdict\">{}</p>\n", advice);
+  glance += sentences_of(text_at(accuracy, "verdict"), glance.empty());
   glance += markup("<p>{}</p>\n",
                    singular(fmt::format(
                        "{} rays of the scene {} were compared with exact arithmetic, each measured {} times.",

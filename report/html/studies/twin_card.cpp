@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -10,10 +11,14 @@ namespace carousel::report::html {
 
 namespace {
 
-/// A ratio of this machine's to the twin's, in words: "1.30 times the energy (1.25 to 1.36)".
+/// A ratio of this machine's to the twin's, in words: "1.30 times the energy (1.25 to 1.36)". Near 1 it has a digit
+/// more.
 std::string times_text(const Json& ratio, const char* more) {
-  std::string out = fmt::format("{:.2f} times {}", number_at(ratio, "ratio"), more);
-  if (find(ratio, "low")) out += fmt::format(" ({:.2f} to {:.2f})", number_at(ratio, "low"), number_at(ratio, "high"));
+  const double mean = number_at(ratio, "ratio");
+  const int digits = std::abs(mean - 1) < 0.1 ? 3 : 2;
+  std::string out = fmt::format("{:.{}f} times {}", mean, digits, more);
+  if (find(ratio, "low"))
+    out += fmt::format(" ({:.{}f} to {:.{}f})", number_at(ratio, "low"), digits, number_at(ratio, "high"), digits);
   return out;
 }
 

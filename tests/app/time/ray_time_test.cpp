@@ -1,12 +1,17 @@
 // Where the cycles of all rays go (`ray_time`, `heat`): the stages add up to the cycle on machines of every kind, and
 // of a ray that is alone they are those that `carousel follow` tells of it, which are noted elsewhere.
+#include <algorithm>
 #include <cmath>
 #include <map>
+#include <span>
 #include <sstream>
 
 #include <fmt/format.h>
+#include <gmock/gmock.h>
 
 #include "core/statistics/ray_stage_counts.h"
+#include "core/system/memory_budget.h"
+#include "scene/images/image_decode.h"
 #include "tests/app/time/timed_run.h"
 
 namespace carousel::ray_time_test {
@@ -183,6 +188,26 @@ TEST_F(RayTime, OfThePixelsIsThatOfTheRays) {
     for (const char* name : {"cycles", "tests", "hops", "waiting"})
       EXPECT_TRUE(std::filesystem::exists(program_.folder() / fmt::format("maps/heat_{}.png", name)));
   }
+}
+
+// Cycles of pixels differ less than they are large: the least bright pixel of any cost is not near the brightest.
+TEST_F(RayTime, LogarithmicMapsBeginAtTheLeastCost) {
+  program_.write("machine.yaml", kMachine);
+  const Outcome outcome = program_.run({"run", "machine.yaml", "--set", "engine.kind=cycle", "--set",
+                                        "engine.what_if=false", "--heat", "log", "--quiet", "--out", "maps"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string png = program_.read("maps/heat_cycles.png");
+  MemoryBudget memory(1 << 20);
+  const scene::Image map =
+      scene::decode_image(std::span(reinterpret_cast<const unsigned char*>(png.data()), png.size()), memory);
+  int least = 255, most = 0;
+  for (std::size_t i = 0; i < map.rgba.size(); i += 4) {
+    least = std::min<int>(least, map.rgba[i]);
+    most = std::max<int>(most, map.rgba[i]);
+  }
+  EXPECT_LT(least, 60) << "red of the stops: 0, 80, 190, 250, 252";
+  EXPECT_GT(most, 245);
+  EXPECT_THAT(program_.read("maps/report.html"), testing::HasSubstr("id=\"heat-words\""));
 }
 
 TEST_F(RayTime, MapsAreRefusedWherePixelsAreNotKnown) {

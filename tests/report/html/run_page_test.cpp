@@ -22,9 +22,13 @@ Json small_run() {
 }
 
 /// The page without its scripts, which are long.
-std::string page(const Json& report, const Json* versus = nullptr) {
-  const std::string all = run_page(report, {}, {}, versus);
+std::string page(const Json& report, const Json* versus = nullptr, const HeatMap& heat = {}) {
+  const std::string all = run_page(report, {}, heat, versus);
   return all.substr(0, all.find("<script"));
+}
+
+Json link_of(int from, int to, double use) {
+  return {{"from", from}, {"to", to}, {"packets", 10}, {"utilisation", use}};
 }
 
 TEST(RunPageText, ShowsTheFramesOfASeries) {
@@ -86,8 +90,109 @@ TEST(RunPageText, DrawsWhereTheCyclesOfRaysGo) {
   report["ray_time"]["by_kind"] = Json::array();
   const std::string text = page(report);
   EXPECT_THAT(text, HasSubstr("fig-ray-time"));
-  EXPECT_LT(text.find("<span>collection</span>"), text.find("<span>test</span>")) << "also without scripts";
-  EXPECT_NE(text.find("<span>collection</span>"), text.npos);
+  EXPECT_LT(text.find("<span>waiting in collections</span>"), text.find("<span>in test</span>")) << "without scripts";
+  EXPECT_NE(text.find("<span>waiting in collections</span>"), text.npos);
+  EXPECT_THAT(text, HasSubstr("A ray spends 75.0 % of its 40.00 cycles waiting in collections, and 25.0 % in test."));
+  EXPECT_THAT(text, HasSubstr("<dt>Latency</dt><dd>40.00 cycles until it is shaded</dd>"));
+}
+
+TEST(RunPageText, DrawsTheCyclesOfEachKindOfRayAlsoWithoutScripts) {
+  Json report = small_run();
+  report["ray_time"] = {{"rays", 100}, {"latency", 40.0}, {"cycles", 4000}, {"collection", 3000}, {"test", 1000}};
+  report["ray_time"]["by_kind"] = {
+      {{"kind", "camera"}, {"bounce", 0}, {"rays", 60}, {"cycles", 3000}, {"collection", 2400}, {"test", 600}},
+      {{"kind", "shadow"}, {"bounce", 0}, {"rays", 40}, {"cycles", 1000}, {"collection", 600}, {"test", 400}}};
+  const std::string text = page(report);
+  const std::size_t figure = text.find("id=\"fig-ray-time-kinds\" data-chart=\"amounts\"");
+  ASSERT_NE(figure, text.npos);
+  const std::string still = text.substr(figure, text.find("</figure>", figure) - figure);
+  // A camera ray takes 50 cycles, 40 of them in collections, and a shadow ray 25, 15 of them there: of the longest bar
+  // these are 800, 200, 300 and 200 thousandths.
+  for (const char* piece :
+       {"x=\"0\" width=\"800\"", "x=\"800\" width=\"200\"", "x=\"0\" width=\"300\"", "x=\"300\" width=\"200\""})
+    EXPECT_THAT(still, HasSubstr(piece));
+}
+
+TEST(RunPageText, NamesTheLinkThatIsBusiest) {
+  Json report = small_run();
+  report["resources"] = {{{"resource", 0}}, {{"resource", 1}}};
+  report["links"] = {link_of(0, 1, 0.05), link_of(1, 2, 0.997), link_of(2, 0, 0.05)};
+  report["bound"] = {{"reached", 0.168}, {"classes", {{{"name", "link_bandwidth"}, {"rays_per_kilocycle", 534.02}}}}};
+  const std::string text = page(report);
+  EXPECT_THAT(text,
+              HasSubstr("Of the links, that from resource 1 to bridge 0 is busiest: it moves packets in 99.7 % of "
+                        "the cycles, where a link does in 36.6 % in the mean."));
+  EXPECT_THAT(text,
+              HasSubstr("link bandwidth would allow 534.0 rays in 1,000 cycles, if all links carried as much; the "
+                        "run reached 16.8 % of that."));
+  report["drawing"] = {{{"name", "left"}}, {{"name", "right"}}, {{"name", "door"}}};
+  EXPECT_THAT(page(report), HasSubstr("that from right to door is busiest"));
+  report["links"][1]["utilisation"] = 0.05;
+  EXPECT_THAT(page(report), Not(HasSubstr("is busiest"))) << "of alike ones none is";
+  EXPECT_THAT(page(report), HasSubstr("Each link moves packets in 5.0 % of the cycles."));
+}
+
+TEST(RunPageText, TellsFirstWhatStandsBehindThePartThatLimits) {
+  Json report = small_run();
+  report["shading"] = {{"utilisation", 0.991}};
+  report["packets"] = {{"issued", 0}, {"rays_mean", 0.0}, {"bubble_fraction", 0.0}};
+  report["memory"] = {{"dram_utilisation", 0.256},
+                      {"caches", {{{"lines", 100}, {"hits", 80}}, {{"lines", 300}, {"hits", 150}}}},
+                      {"dram", {{"row_hit_fraction", 0.25}}}};
+  report["memory"]["dram"]["channels"] = {{{"reads", 30}, {"writes", 10}, {"row_conflicts", 24}}};
+  report["bottleneck"] = {{"limits", ""}, {"verdict", "not found out"}, {"gains", Json::array()}};
+  report["bound"] = {{"reached", 0.5}, {"classes", {{{"name", "shading"}, {"rays_per_kilocycle", 100.0}}}}};
+  std::string text = page(report);
+  EXPECT_THAT(text, Not(HasSubstr("A packet holds"))) << "there are none";
+  EXPECT_THAT(text, HasSubstr("DRAM moves data in 25.6 % of the cycles, 25.0 % of its accesses find their row open and "
+                              "60.0 % another one; 57.5 % of the lines asked for are in the L2."));
+  EXPECT_LT(text.find("Shader workers are busy"), text.find("DRAM moves data")) << "the tightest part's";
+  EXPECT_THAT(text, HasSubstr("The gain of a change was not measured."));
+  report["bottleneck"]["limits"] = "memory_bandwidth";
+  text = page(report);
+  EXPECT_LT(text.find("DRAM moves data"), text.find("Shader workers are busy"));
+}
+
+TEST(RunPageText, HasNoSectionOfCollectionsWhereNoneWereMade) {
+  Json report = small_run();
+  report["collections"] = {{"created", 0}, {"fullness_mean", 0.0}};
+  EXPECT_THAT(page(report), Not(HasSubstr("full when it was issued")));
+  report["collections"]["created"] = 3;
+  EXPECT_THAT(page(report), HasSubstr("full when it was issued"));
+}
+
+TEST(RunPageText, ListsWhatCostsNothingAndKeysWithoutEffect) {
+  Json report = small_run();
+  EXPECT_THAT(page(report), Not(HasSubstr("Not charged")));
+  report["charges"] = {{{"name", "path_state"},
+                        {"meaning", "states are there"},
+                        {"key", "memory.path_state"},
+                        {"set", "memory.path_state=memory"}},
+                       {{"name", "crossbars"}, {"meaning", "routers switch"}, {"key", ""}, {"set", ""}}};
+  report["ignored_keys"] = {"packets.rays"};
+  const std::string text = page(report);
+  EXPECT_THAT(text,
+              HasSubstr("<td>states are there</td><td>memory.path_state</td><td>--set memory.path_state=memory</td>"));
+  EXPECT_THAT(text, HasSubstr("<td>routers switch</td><td>none</td>"));
+  EXPECT_THAT(text, HasSubstr("<th scope=\"row\">packets.rays</th>"));
+}
+
+TEST(RunPageText, PacksTheNumbersOfAllPixels) {
+  Json report = small_run();
+  report["config"]["image"] = {{"width", 2}, {"height", 1}, {"samples", 1}};
+  report["heat"] = {{"cycles_mean", 20.0}, {"slowest", {{{"x", 1}, {"y", 0}, {"rays", 1}, {"cycles", 30}}}}};
+  const char* const rows = "x,y,rays,cycles,tests,hops,waiting\n0,0,1,10,2,3,4\n1,0,1,30,5,6,7\n";
+  const HeatMap map{{"image/png", "P"}, rows};
+  EXPECT_THAT(run_page(report, {}, map), HasSubstr("id=\"heat-head\">{\"width\":2,\"samples\":2,\"rows\":[{"));
+  EXPECT_THAT(page(report, nullptr, map), HasSubstr("id=\"heat-map\""));
+  EXPECT_THAT(page(report, nullptr, map), HasSubstr("class=\"map still\""))
+      << "the picture is for pages without scripts";
+  for (const char* wrong : {"", "x\n", "x,y\n0,0,1,10,2,3,4\n", "x,y\n0,0,1,10,2,3,4\n1,0,1,30,5,6\n",
+                            "x,y\n0,0,1,10,2,3,4\n1,0,1,30,5,6,7"}) {
+    const std::string text = run_page(report, {}, {map.picture, wrong});
+    EXPECT_THAT(text, Not(HasSubstr("id=\"heat-head\""))) << wrong;
+    EXPECT_THAT(text.substr(0, text.find("<script")), HasSubstr("class=\"map\""));
+  }
 }
 
 TEST(RunPageText, HasTheTwinBesideTheAnswersOfTheSameMachineOnly) {
@@ -106,6 +211,9 @@ TEST(RunPageText, HasTheTwinBesideTheAnswersOfTheSameMachineOnly) {
   const std::string text = page(report, &versus);
   EXPECT_THAT(text, HasSubstr("this machine is slower: 0.80 times the rays a cycle (0.75 to 0.85)"));
   EXPECT_THAT(text, HasSubstr("memory bandwidth"));
+  Json close = versus;
+  close["against"][0]["speed"] = {{"ratio", 1.0114}, {"low", 1.0101}, {"high", 1.0123}};
+  EXPECT_THAT(page(report, &close), HasSubstr("1.011 times the rays a cycle (1.010 to 1.012)"));
   EXPECT_THAT(page(report), Not(HasSubstr("conventional machine does")));
   versus["runs"][1]["cycles"] = 999;
   EXPECT_FALSE(is_of_run(versus, report)) << "the twin alone has so many cycles";

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "report/compare/comparison.h"
+#include "report/html/studies/compare_page.h"
 
 namespace carousel::report {
 namespace {
@@ -92,6 +93,30 @@ TEST(CompareRuns, GivesValuesAndRatios) {
   ASSERT_EQ(c.configuration.size(), 1u);
   EXPECT_EQ(c.configuration[0].name, "topology.resources");
   EXPECT_EQ(c.configuration[0].texts, (std::vector<std::string>{"4", "8", "4"}));
+}
+
+TEST(CompareRuns, PrintsCountsInGroupsAndAVerdictAFactALine) {
+  Json a = report(100), b = report(158'000);
+  a["bottleneck"]["verdict"] = "not found out: 1 paths for 8,192 ray slots; from some 66,000 paths on it can be said";
+  const std::string table = comparison_table(compare_runs({{"a", a}, {"b", b}}), false);
+  EXPECT_NE(table.find("verdict        A  not found out: 1 path for 8,192 ray slots\n"
+                       "                  from some 66,000 paths on it can be said\n"),
+            table.npos)
+      << table;
+  EXPECT_NE(table.find("158,000"), table.npos) << table;
+  EXPECT_NE(table.find("x1,580"), table.npos) << table;
+  EXPECT_EQ(table.find("e+0"), table.npos) << table;
+}
+
+TEST(ComparePage, NamesUsesAsThePageOfARunAndDrawsOnlyWhatDiffers) {
+  const auto page = [](std::uint64_t cycles) {
+    return html::compare_page(compare_runs({{"a", report(100)}, {"b", report(cycles)}}), false);
+  };
+  const std::string differ = page(50), alike = page(100);
+  EXPECT_NE(differ.find(">box: nothing to do<"), std::string::npos);
+  EXPECT_EQ(differ.find(">box idle<"), std::string::npos);
+  EXPECT_NE(differ.find("Throughput: ratio to run A"), std::string::npos);
+  EXPECT_EQ(alike.find(": ratio to run A"), std::string::npos) << "all ratios are 1";
 }
 
 TEST(CompareRuns, ARowThatOneRunLacksHasNoRatio) {

@@ -1,16 +1,19 @@
 // Bars of one column, a bar a row. Parts that have too many rows get a slider.
-import {axis, base, full, kBetter, kHues, kWorse, names, short} from '../look.js';
+import {axis, base, full, kBetter, kHues, kWorse, names, scaleType, short} from '../look.js';
 
-export function bars({tables: [table], colours, width}) {
+export function bars({tables: [table], names: id, colours, width}) {
   const value = table.rows[0].findIndex((cell, c) => c > 0 && typeof cell === 'number' && table.columns[c] !== 'width bytes per cycle');
   const rows = table.rows;
   const few = 24;
+  // Rates of queues span decades; what adds up to a whole has no such scale.
+  const log = id === 'queues' && scaleType(rows.map((r) => r[value]), 100) === 'log';
   return {
     ...base(colours),
     legend: {show: false},
     grid: {left: 10, right: 70, top: 10, bottom: 40, containLabel: true},
     tooltip: {...base(colours).tooltip, trigger: 'axis', axisPointer: {type: 'shadow'}, valueFormatter: full},
-    xAxis: axis(colours, {type: 'value', name: table.columns[value], nameLocation: 'middle', nameGap: 26,
+    xAxis: axis(colours, {...(log ? {type: 'log', min: 10 ** Math.floor(Math.log10(Math.min(...rows.map((r) => r[value]))))} : {type: 'value'}),
+      name: table.columns[value] + (log ? ' (logarithmic)' : ''), nameLocation: 'middle', nameGap: 26,
       splitNumber: width < 600 ? 3 : 6, axisLabel: {formatter: short}}),
     title: rows.length > few ? {text: `${few} of ${rows.length} rows; the slider at the right has the others`, right: 24, bottom: 0,
       textStyle: {color: colours.soft, fontSize: 12, fontWeight: 400}} : undefined,

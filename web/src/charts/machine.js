@@ -27,8 +27,8 @@ export function machine(context) {
   const most = context.most ?? roundMost([...resourceUse, ...linkUse]);
   const now = context.now ?? {resources: resourceUse, links: linkUse};
   const gap = 0.72 * leastGap(at, width - 80, height - 106, !bus);
-  const size = Math.max(5, Math.min(46, gap));
-  const named = size >= 15, valued = size >= 38;
+  const size = Math.max(5, Math.min(ends.length ? 46 : 72, gap));
+  const named = size >= 15, valued = size >= 26;
   const node = (i) => {
     const hub = i >= facts.resources;
     const tests = !hub && resourceUse[i] !== null;
@@ -42,8 +42,8 @@ export function machine(context) {
       symbol: hub ? (bus ? 'rect' : 'diamond') : resources ? 'roundRect' : 'circle',
       symbolSize: hub && bus ? [width * 0.8, 22] : size,
       itemStyle: {color: colour, borderColor: colours.soft, borderWidth: 1},
-      label: {show: named || (hub && bus), color: ink, lineHeight: 14,
-        fontSize: drawn ? Math.max(7, Math.min(12, Math.floor(1.7 * size / short.length))) : size < 24 ? 9 : 12,
+      label: {show: named || (hub && bus), color: ink, lineHeight: size < 38 ? 11 : 14,
+        fontSize: drawn ? Math.max(7, Math.min(12, Math.floor(1.7 * size / short.length))) : size < 24 ? 9 : size < 38 ? 10 : 12,
         formatter: valued && tests ? `${short}\n${Math.round(100 * (now.resources[i] ?? 0))} %` : short},
     };
   };

@@ -27,7 +27,7 @@ export function scatter({tables: [table], colours, width}) {
       {name: 'all levels', type: 'scatter', data: points, symbolSize: 10, itemStyle: {color: kHues[4], opacity: 0.9}},
       {name: 'none is cheaper and better', type: 'line', data: named, symbolSize: 11, itemStyle: {color: kHues[5]},
         lineStyle: {color: kHues[5]}, clip: false,
-        label: {show: true, color: colours.ink, fontSize: width < 600 ? 9 : 11, distance: 9, formatter: ({name}) => words(name),
+        label: {show: true, color: colours.ink, fontSize: width < 600 ? 9 : 11, lineHeight: 12, distance: 9, formatter: ({name}) => words(name),
           backgroundColor: colours.page, padding: 1},
         labelLayout: {moveOverlap: 'shiftY'}},
     ],
