@@ -6,6 +6,7 @@
 
 #include "report/accuracy/level_text.h"
 #include "report/text/number_text.h"
+#include "report/text/singular.h"
 
 namespace carousel::report {
 
@@ -44,7 +45,7 @@ std::string price_text(const Accuracy& a, Clock clock) {
 std::string configured_text(const Accuracy& a) {
   const AccuracyRow *const row = safe(a, Clock::kHardware), *const least = cheapest(a, Clock::kHardware);
   if (row == nullptr || row == least || !row->modelled || !least->modelled) return "";
-  return fmt::format(" where the testers limit; {:.3g} for {:.3g} as configured", row->modelled->cycles_per_ray,
+  return fmt::format(" where testers limit; {:.3g} for {:.3g} as configured", row->modelled->cycles_per_ray,
                      least->modelled->cycles_per_ray);
 }
 
@@ -58,23 +59,37 @@ std::string settings_text(const AccuracyRow& row) {
   return fmt::format("accuracy: {{triangle: {}, box: {}, transform: {}}}", row.triangle, row.box, row.transform);
 }
 
+/// The settings of a row that are not those of another one.
+std::string other_settings_text(const AccuracyRow& row, const AccuracyRow& other) {
+  std::string out;
+  const auto add = [&](const char* key, const std::string& value, const std::string& than) {
+    if (value != than) out += fmt::format("{}{}: {}", out.empty() ? "" : ", ", key, value);
+  };
+  add("triangle", row.triangle, other.triangle);
+  add("box", row.box, other.box);
+  add("transform", row.transform, other.transform);
+  return "{" + out + "}";
+}
+
 std::string advice_text(const Accuracy& a) {
   const AccuracyRow *const host = safe(a, Clock::kHost), *const machine = safe(a, Clock::kHardware);
   if (host == nullptr && machine == nullptr) return "none: each level gets something wrong";
   if (host == machine) return settings_text(*host);
   std::string out;
   if (host != nullptr) out = settings_text(*host) + " on this host";
-  if (machine != nullptr) out += (out.empty() ? "" : "; ") + settings_text(*machine) + " on the machine";
+  if (machine != nullptr)
+    out += host != nullptr ? fmt::format("; {} on the machine", other_settings_text(*machine, *host))
+                           : settings_text(*machine) + " on the machine";
   return out;
 }
 
 }  // namespace
 
 std::string accuracy_head(const Accuracy& a) {
-  return fmt::format(
+  return singular(fmt::format(
       "{}{}: {} triangles, {} instances; {} rays, {} repetitions, seed {}; pictures {} x {} x {}, {} seeds\n",
       a.incomplete ? "INCOMPLETE: interrupted; what follows is what was done\n" : "", a.scene, grouped(a.triangles),
-      grouped(a.instances), grouped(a.rays), a.repetitions, a.seed, a.width, a.height, a.samples, a.seeds);
+      grouped(a.instances), grouped(a.rays), a.repetitions, a.seed, a.width, a.height, a.samples, a.seeds));
 }
 
 std::string accuracy_summary(const Accuracy& a) {

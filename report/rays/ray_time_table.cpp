@@ -24,13 +24,16 @@ std::string ray_time_table(const RayTime& time) {
 std::string heat_table(const Heat& heat) {
   constexpr std::size_t kShown = 3;
   if (heat.slowest.empty()) return "";
-  std::string out = fmt::format("{:<13}", "slow pixels");
+  Items items;
   for (std::size_t i = 0; i < std::min(kShown, heat.slowest.size()); ++i) {
     const PixelHeat& pixel = heat.slowest[i];
-    out += fmt::format("{}{},{}: {} cycles of {} rays", i == 0 ? "" : "   ", pixel.x, pixel.y, grouped(pixel.cycles),
-                       pixel.rays);
+    items.add(fmt::format("{},{}:", pixel.x, pixel.y),
+              fmt::format("{} cycles of {} rays", grouped(pixel.cycles), pixel.rays));
   }
-  return out + fmt::format("   {} a pixel\n", grouped(static_cast<std::uint64_t>(heat.cycles_mean + 0.5)));
+  items.add(grouped(static_cast<std::uint64_t>(heat.cycles_mean + 0.5)), "a pixel");
+  Table table;
+  items.lines(table, "slow pixels");
+  return table.take();
 }
 
 }  // namespace carousel::report

@@ -74,17 +74,19 @@ void resource_lines(Table& table, const std::vector<Resource>& resources, const 
 void link_line(Table& table, const std::vector<Link>& links) {
   std::uint64_t packets = 0, stalled = 0, occupancy = 0, depth = 0;
   double mean = 0;
+  const Link* busiest = nullptr;
   for (const Link& link : links) {
     packets += link.packets;
     stalled += link.stalled;
     occupancy = std::max(occupancy, link.occupancy_max);
     depth = std::max(depth, link.depth);
     mean += link.occupancy_mean * static_cast<double>(link.packets);
+    if (link.utilisation && (busiest == nullptr || *link.utilisation > *busiest->utilisation)) busiest = &link;
   }
-  const bool cycles = !links.empty() && links.front().cycles.has_value();
   table.line("links", "{} of depth {}   {} packets   occupancy {:.1f} mean, {} most   {} {}", links.size(), depth,
              grouped(packets), ratio(mean, double(packets)), occupancy, grouped(stalled),
-             cycles ? "cycles stalled" : "refused");
+             links.front().cycles ? "cycles stalled" : "refused");
+  if (busiest) table.line("", "busiest from {} to {}: {}", busiest->from, busiest->to, percent(*busiest->utilisation));
 }
 
 void ray_queue_lines(Table& table, const RayQueues& queues) {
@@ -97,14 +99,13 @@ void ray_queue_lines(Table& table, const RayQueues& queues) {
   line("", "new rays", "groups", queues.created);
 }
 
-/// A line for each kind of message: its bytes, sender, receiver and wire. Kinds that were not sent are left out.
+/// A line for each kind of message: its bytes, sender, receiver and width. Kinds that were not sent are left out.
 void byte_lines(Table& table, const std::vector<ByteRow>& rows, std::uint64_t rays) {
   std::string_view name = "bytes";
   for (const ByteRow& row : rows) {
     if (row.bytes == 0) continue;
-    table.line(name, "{:<24} {:>10} {:>10} a ray   from {} to {}, over {}, {} bytes a cycle", row.what,
-               bytes_text(row.bytes), fmt::format("{:.1f}", ratio(row.bytes, rays)), row.from, row.to, row.over,
-               row.width);
+    table.line(name, "{:<24} {:>10} {:>10} a ray   from {} to {}, {} bytes a cycle", row.what, bytes_text(row.bytes),
+               fmt::format("{:.1f}", ratio(row.bytes, rays)), row.from, row.to, row.width);
     name = "";
   }
 }

@@ -305,7 +305,8 @@ void resource_words(Words& w) {
       .item("occupancy N mean, N most", "links[].occupancy_mean", "packets that wait in a link, on average and at most")
       .item("N refused", "links[].stalled", "sends that a full link refused")
       .item("N cycles stalled", "links[].stalled",
-            "cycles in which a packet waited for a place in its link, all links together");
+            "cycles in which a packet waited for a place in its link, all links together")
+      .item("busiest from N to N: N", "links[].utilisation", "the link that moved packets in most cycles");
   Parts::for_each([&]<class P>(std::size_t) {
     w.line(P::kName);
     for (const Counter<typename P::Counts>& row : kCounters<typename P::Counts>)
@@ -326,9 +327,8 @@ void resource_words(Words& w) {
 
 void last_words(Words& w) {
   w.line("bytes").item(
-      "* N N a ray from * to *, over *, N bytes a cycle", "bytes[]",
-      "a kind of message: its bytes in all and for each completed ray, its sender and receiver, and the wires "
-      "or ports that it occupies, with the width of each");
+      "* N N a ray from * to *, N bytes a cycle", "bytes[]",
+      "a kind of message: its bytes in all and for each completed ray, its ends, and the width of each of its wires");
   w.line("host")
       .item("N to simulate on N threads", "host.wall_seconds",
             "time of the simulation on this host, and its threads: it says nothing about the simulated machine")

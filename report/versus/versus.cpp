@@ -66,10 +66,9 @@ std::string speed_line(const VersusMachine& machine, const VersusMachine& twin, 
 }
 
 std::string cost_line(const VersusMachine& machine, const VersusMachine& twin, const VersusPair& pair) {
-  return fmt::format("{} times the bytes from memory a ray, {} over {}; {} times the joules, {} over {} nJ",
-                     ratio_text(pair.bytes), mean_text(machine.memory_bytes_per_ray),
-                     mean_text(twin.memory_bytes_per_ray), ratio_text(pair.joules), mean_text(machine.nj_per_ray),
-                     mean_text(twin.nj_per_ray));
+  return fmt::format("memory bytes a ray {} times, {:.4g} over {:.4g}; joules {} times, {:.4g} over {:.4g} nJ",
+                     ratio_text(pair.bytes), machine.memory_bytes_per_ray.mean, twin.memory_bytes_per_ray.mean,
+                     ratio_text(pair.joules), machine.nj_per_ray.mean, twin.nj_per_ray.mean);
 }
 
 /// `drawn`: the machine has a drawing, which its twin of any size has not.
@@ -80,20 +79,18 @@ std::string area_line(const VersusMachine& machine, const VersusMachine* twin, c
       "{} at equal area, {} times as fast: the twin has {} resources in {:.4g} mm2, this machine {} in "
       "{:.4g}{}",
       pair->verdict, ratio_text(pair->speed), twin->resources, twin->mm2, machine.resources, machine.mm2,
-      drawn ? "; that twin is not drawn, and its requests cross no link of the drawing" : "");
+      drawn ? "; that twin is not drawn" : "");
 }
 
-/// The class of the slower machine that gains most, beside the tightest bounds of both.
+/// The class of the slower machine that gains most; where none was looked for, the tightest bounds of both.
 std::string part_line(const Versus& v, const VersusMachine& machine, const VersusMachine& twin) {
+  if (!v.turns.empty())
+    return fmt::format("{} decides in the slower one, the {}: {} gives {:+.1f} %", class_words(v.turns.front().name),
+                       v.slower == "twin" ? "twin" : "machine", v.turns.front().action, 100 * v.turns.front().gain);
   const auto bound = [](const VersusMachine& m) {
     return fmt::format("{} ({} of its bound)", class_words(m.limits), percent(m.reached));
   };
-  std::string out = fmt::format("busiest: of this machine {}, of the twin {}", bound(machine), bound(twin));
-  if (!v.turns.empty())
-    out += fmt::format("; what decides in the slower one, the {}, is {}: {} gives {:+.1f} %",
-                       v.slower == "twin" ? "twin" : "machine", class_words(v.turns.front().name),
-                       v.turns.front().action, 100 * v.turns.front().gain);
-  return out;
+  return fmt::format("busiest: of this machine {}, of the twin {}", bound(machine), bound(twin));
 }
 
 std::string turn_line(const Versus& v, const VersusPair& pair) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "report/run/report_json.h"
+#include "report/text/fit_lines.h"
 #include "report/versus/versus.h"
 #include "tests/app/support/program.h"
 #include "tests/support/json_schema_check.h"
@@ -112,6 +113,28 @@ TEST(VersusLines, SayWhatTurnsItRound) {
   v.against.front().verdict = "alike";
   EXPECT_EQ(report::versus_lines(v).back(),
             "nothing to turn round; with twice the memory the twin would be 0.900 times as fast as this machine");
+}
+
+TEST(VersusLines, AreFiveThatFitAScreen) {
+  report::Versus v;
+  v.seeds = 3;
+  v.slower = "twin";
+  const auto machine = [](const char* name, const char* limits) {
+    report::VersusMachine out{.name = name, .limits = limits};
+    out.rays_per_kilocycle = {605.64, 5.41}, out.memory_bytes_per_ray = {36.061, 1.02},
+    out.nj_per_ray = {15.462, 0.281};
+    out.reached = 0.991, out.resources = 16, out.mm2 = 24.791;
+    return out;
+  };
+  v.machines = {machine("machine", "memory_bandwidth"), machine("twin", "memory_bandwidth"),
+                machine("twin_at_equal_area", "shading")};
+  const report::VersusRatio ratio{1.0114, 1.0101, 1.0123};
+  v.against = {{.than = "twin", .verdict = "faster", .speed = ratio, .bytes = ratio, .joules = ratio},
+               {.than = "twin_at_equal_area", .verdict = "faster", .speed = ratio, .bytes = ratio, .joules = ratio}};
+  v.turns = {{"memory_bandwidth", "twice memory.dram_bytes_per_cycle", {}, 0.581, 1.564}};
+  const std::vector<std::string> lines = report::versus_lines(v);
+  EXPECT_EQ(lines.size(), 5u);
+  for (const std::string& line : lines) EXPECT_LE(report::columns_of(line), 120u) << line;
 }
 
 // By hand: ratios 2 and 8 have the geometric mean 4; with two values t is 12.71 and the error of the mean half of

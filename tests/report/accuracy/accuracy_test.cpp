@@ -87,6 +87,15 @@ TEST(AccuracySummary, SaysOnFiveLinesWhatSafetyCostsAndWhatGoesWrongWithout) {
   EXPECT_THAT(text, testing::HasSubstr("advice   accuracy: {triangle: slow, box: box, transform: two_step}\n"));
 }
 
+TEST(AccuracySummary, NamesOfTheMachinesLevelWhatDiffersFromTheHostsAndCountsOneAsOne) {
+  // The cheapest safe level is "double" on the host and "exact" in hardware.
+  Accuracy a = with_rows({with_cycles(row("double", 10, 0, true), 4, 1), with_cycles(row("exact", 30, 0, true), 2, 1)});
+  EXPECT_THAT(accuracy_summary(a), testing::HasSubstr("advice   accuracy: {triangle: double, box: box, transform: "
+                                                      "two_step} on this host; {triangle: exact} on the machine\n"));
+  a.repetitions = 1;
+  EXPECT_THAT(accuracy_head(a), testing::HasSubstr(", 1 repetition, seed"));
+}
+
 TEST(AccuracySummary, KnowsWhatWasNotMeasuredAndWhatIsNotSafe) {
   EXPECT_THAT(accuracy_summary(with_rows({row("only", 10, 0, true)})),
               testing::AllOf(testing::HasSubstr("host     the safe level takes 10 ns a ray and is the cheapest\n"),

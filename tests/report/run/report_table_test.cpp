@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/text/fit_lines.h"
 #include "report/text/number_text.h"
 #include "report/text/table_lines.h"
 #include "tests/report/run/sample_report.h"
@@ -33,6 +34,30 @@ TEST(ReportTable, SaysWhatHappened) {
   EXPECT_THAT(table, HasSubstr("verify       990 rays traced again, 1 mismatches; pixel 3\n"));
   EXPECT_THAT(table, HasSubstr("digest       hits 0123   image 4567\n"));
   EXPECT_THAT(table, Not(HasSubstr("INCOMPLETE")));
+}
+
+TEST(ReportTable, HasLinesThatFitAScreen) {
+  Report report = sample_report();
+  report.bytes.emplace() = {{.what = "requests of ray data",
+                             .from = "ray control",
+                             .to = "resources",
+                             .over = "load ports and wires of IDs",
+                             .width = 32,
+                             .bytes = 3'062'000}};
+  report.heat.emplace().cycles_mean = 240'942;
+  for (std::uint64_t i = 0; i < 3; ++i) report.heat->slowest.push_back({181 + i, 51, 6, 1'204'169, 9, 9, 9});
+  report.links->front().utilisation = 0.25;
+  report.links->back().utilisation = 0.997;
+  const std::string table = report_table(report);
+  EXPECT_THAT(table, HasSubstr("3092.9 a ray   from ray control to resources, 32 bytes a cycle\n")) << "990 rays";
+  EXPECT_THAT(table, HasSubstr("slow pixels  181,51: 1,204,169 cycles of 6 rays   182,51: "));
+  EXPECT_THAT(table, HasSubstr("240,942 a pixel\n"));
+  EXPECT_THAT(table, HasSubstr("busiest from 1 to 0: 99.7 %\n"));
+  for (std::size_t at = 0; at < table.size();) {
+    const std::size_t end = table.find('\n', at);
+    EXPECT_LE(columns_of(table.substr(at, end - at)), 120u) << table.substr(at, end - at);
+    at = end + 1;
+  }
 }
 
 TEST(ReportTable, SaysNothingOfPacketsWhereThereAreNone) {
