@@ -109,8 +109,9 @@ void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
   const TraceFile::Written written =
       trace.write(*result.timeline, result.series ? &*result.series : nullptr, result.complete);
   if (written.cut)
-    spdlog::warn("{} has {} events and ends before the run; --trace-window, --trace-sample and --trace-events choose",
-                 trace.name(), written.events);
+    spdlog::warn(
+        "{} has {} events and ends after {} of the time; --trace-sample {}, --trace-window or --trace-events chooses",
+        trace.name(), report::grouped(written.events), report::percent(written.reached), written.every);
 }
 
 void find_limits(const Prepared& p, const RenderJob& job, const ringbus::RunResult& result, const SeriesFrame* frame,

@@ -89,7 +89,8 @@ TraceFile::Written TraceFile::write(const ringbus::Timeline& timeline, const rin
 
 TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Timeline& timeline,
                                            const ringbus::TimeSeries* series, bool complete) const {
-  Written out{0, timeline.cut};
+  Written out;
+  out.cut = timeline.cut;
   // Names and counters, which say most, go first; the rest is left to slices, each with its point of a flow.
   const double scale = native_ ? 1e9 : 1;
   std::vector<std::pair<const ringbus::SeriesRow*, std::size_t>> counters;
@@ -113,6 +114,16 @@ TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Time
     budget -= needed;
   }
   out.cut |= slices < timeline.slices.size();
+  if (out.cut) {
+    const double end = static_cast<double>(std::min(wanted_.end, timeline.end)),
+                 first = static_cast<double>(wanted_.first);
+    const double at = slices == 0 ? first : static_cast<double>(timeline.slices[slices - 1].begin);
+    out.reached = end > first ? std::clamp((at - first) / (end - first), 0.0, 1.0) : 1;
+    // Packets are issued at no even rate, so that this is a guess with some room.
+    constexpr double kRoom = 2;
+    out.every =
+        static_cast<std::uint64_t>(std::ceil(kRoom * static_cast<double>(wanted_.every) / std::max(out.reached, 1e-6)));
+  }
   std::unordered_map<std::uint64_t, Trip> trips;
   std::vector<bool> used(timeline.tracks.size());
   for (std::size_t i = 0; i < slices; ++i) {

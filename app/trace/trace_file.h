@@ -32,7 +32,9 @@ class TraceFile {
 
   struct Written {
     std::size_t events = 0;
-    bool cut = false;  ///< events were left out, for there were too many
+    bool cut = false;         ///< events were left out, for there were too many
+    double reached = 1;       ///< the part of the time that was asked for to which they reach
+    std::uint64_t every = 1;  ///< if they were cut: one of so many packets may reach to its end
   };
   /// Only where it writes. `series` may be null. Occupancies become counters, packets flows from part to part. The
   /// trace of a run that was interrupted (not `complete`) says so. The file keeps an error.
