@@ -182,11 +182,17 @@ Html change_card(const Json& report) {
   Html out;
   const Json* gain = limiting_gain(report);
   if (!gain) {
-    if (const Json* least = find(report, "bottleneck.frame_too_small.least_paths"))
-      return markup(
+    if (const Json* least = find(report, "bottleneck.frame_too_small.least_paths")) {
+      out += markup(
           "<p>First the picture: at least {} paths, or fewer ray slots, so that the machine is full for most "
           "of the run.</p>\n",
           value_text(*least));
+      const double paths = number_at(report, "bottleneck.frame_too_small.paths");
+      if (const double samples = number_at(report, "config.image.samples"); samples > 0 && paths > 0)
+        out += markup("<p>To try it: <code>--set image.samples={}</code></p>\n",
+                      std::ceil(samples * number_at(report, "bottleneck.frame_too_small.least_paths") / paths));
+      return out;
+    }
     const BusiestLink link = busiest_link(report);
     if (find(report, "bottleneck"))
       out += markup("<p>The gain of a change was not measured.{}</p>\n", link.use > 0.9 ? " " + link.text : "");

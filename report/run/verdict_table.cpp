@@ -11,13 +11,14 @@
 namespace carousel::report {
 
 std::string verdict_table(const Bottleneck& found) {
-  // Facts of the verdict stand between semicolons: a line each.
-  std::string out;
+  // Facts of the verdict stand between semicolons: a line each, and long lists break at their items.
+  Table facts;
   for (std::size_t begin = 0; begin <= found.verdict.size();) {
     const std::size_t end = std::min(found.verdict.find("; ", begin), found.verdict.size());
-    out += fmt::format("{:<13}{}\n", out.empty() ? "bottleneck" : "", found.verdict.substr(begin, end - begin));
+    wrapped_lines(facts, begin == 0 ? "bottleneck" : "", found.verdict.substr(begin, end - begin), ", ");
     begin = end + 2;
   }
+  std::string out = facts.take();
   const auto named = std::find_if(found.gains.begin(), found.gains.end(),
                                   [&](const BottleneckGain& gain) { return gain.name == found.limits; });
   if (named != found.gains.end() && named->frame > 0)

@@ -68,7 +68,7 @@ Cell ratio_of(const ComparedRow& row, std::size_t run, bool noise) {
 std::string row_words(const std::string& section, const std::string& name) {
   const std::size_t space = name.find(' ');
   if (section == "cycles of the test units" && space != name.npos)
-    if (const std::string use = use_words(name.substr(space + 1)); !use.empty())
+    if (const std::string use = use_words(name.substr(space + 1)); !use.empty() && !name.ends_with(" busy"))
       return words(name.substr(0, space)) + ": " + use;
   return words(name);
 }

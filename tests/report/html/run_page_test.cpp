@@ -153,6 +153,20 @@ TEST(RunPageText, TellsFirstWhatStandsBehindThePartThatLimits) {
   EXPECT_LT(text.find("DRAM moves data"), text.find("Shader workers are busy"));
 }
 
+TEST(RunPageText, SaysWithHowManySamplesAFrameIsLargeEnough) {
+  Json report = small_run();
+  report["config"]["image"] = {{"width", 160}, {"height", 100}, {"samples", 2}};
+  report["bottleneck"] = {{"limits", ""},
+                          {"verdict", "not found out"},
+                          {"gains", Json::array()},
+                          {"frame_too_small", {{"paths", 32000}, {"least_paths", 67000}}}};
+  const std::string text = page(report);
+  EXPECT_THAT(text, HasSubstr("at least 67,000 paths"));
+  EXPECT_THAT(text, HasSubstr("<code>--set image.samples=5</code>")) << "2 * 67,000 / 32,000, rounded up";
+  report["config"].erase("image");
+  EXPECT_THAT(page(report), Not(HasSubstr("image.samples"))) << "of a list of rays";
+}
+
 TEST(RunPageText, HasNoSectionOfCollectionsWhereNoneWereMade) {
   Json report = small_run();
   report["collections"] = {{"created", 0}, {"fullness_mean", 0.0}};

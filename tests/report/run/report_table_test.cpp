@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "report/run/verdict_table.h"
 #include "report/text/fit_lines.h"
 #include "report/text/number_text.h"
 #include "report/text/table_lines.h"
@@ -85,6 +86,22 @@ TEST(ReportTable, BreaksLongListsAtTheirItems) {
   EXPECT_LE(first.size(), 114u);
   EXPECT_EQ(first.back(), ',');
   for (int i = 0; i < 30; ++i) EXPECT_THAT(text, HasSubstr(fmt::format("charge_{}", i)));
+}
+
+TEST(ReportTable, BreaksALongVerdictAtItsClasses) {
+  Bottleneck found;
+  found.verdict =
+      "ray_slots: twice rays.slots_per_resource gains +22.0 % (+1.3 to +42.7 %); not to be told apart from it: "
+      "memory_latency with +13.7 % (-1.7 to +13.7 %), fetch_ahead with +13.7 % (-1.7 to +13.7 %), shape_buffer with "
+      "+13.7 % (-1.7 to +13.7 %) and 13 more";
+  const std::string text = verdict_table(found);
+  EXPECT_THAT(text, HasSubstr("bottleneck   ray_slots: twice rays.slots_per_resource gains +22.0 % (+1.3 to +42.7 %)\n"
+                              "             not to be told apart from it: memory_latency with "));
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = text.find('\n', at);
+    EXPECT_LE(end - at, 120u) << text.substr(at, end - at);
+    at = end + 1;
+  }
 }
 
 // The last row is a packet process, which issues for the resource that it serves.

@@ -5,14 +5,15 @@ export function bars({tables: [table], names: id, colours, width}) {
   const value = table.rows[0].findIndex((cell, c) => c > 0 && typeof cell === 'number' && table.columns[c] !== 'width bytes per cycle');
   const rows = table.rows;
   const few = 24;
+  const positive = rows.map((r) => r[value]).filter((v) => v > 0);
   // Rates of queues span decades; what adds up to a whole has no such scale.
-  const log = id === 'queues' && scaleType(rows.map((r) => r[value]), 100) === 'log';
+  const log = id === 'queues' && scaleType(positive, 100) === 'log';
   return {
     ...base(colours),
     legend: {show: false},
     grid: {left: 10, right: 70, top: 10, bottom: 40, containLabel: true},
     tooltip: {...base(colours).tooltip, trigger: 'axis', axisPointer: {type: 'shadow'}, valueFormatter: full},
-    xAxis: axis(colours, {...(log ? {type: 'log', min: 10 ** Math.floor(Math.log10(Math.min(...rows.map((r) => r[value]))))} : {type: 'value'}),
+    xAxis: axis(colours, {...(log ? {type: 'log', min: 10 ** Math.floor(Math.log10(Math.min(...positive)))} : {type: 'value'}),
       name: table.columns[value] + (log ? ' (logarithmic)' : ''), nameLocation: 'middle', nameGap: 26,
       splitNumber: width < 600 ? 3 : 6, axisLabel: {formatter: short}}),
     title: rows.length > few ? {text: `${few} of ${rows.length} rows; the slider at the right has the others`, right: 24, bottom: 0,
