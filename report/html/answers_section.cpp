@@ -178,6 +178,12 @@ Html why_card(const Json& report) {
   return out.empty() ? out : markup("<ul>\n{}</ul>\n", out);
 }
 
+/// With a capital at the start, unless a key stands there.
+std::string action_words(const std::string& action) {
+  const std::size_t end = std::min(action.find(' '), action.size());
+  return action.find('.') < end ? action : capital(action);
+}
+
 Html change_card(const Json& report) {
   Html out;
   const Json* gain = limiting_gain(report);
@@ -204,7 +210,7 @@ Html change_card(const Json& report) {
   out += markup(
       "<p><strong>{}</strong> gains <strong>{}</strong> ({} to {} with 95 % of confidence, other seeds of the "
       "picture included).</p>\n",
-      capital(text_at(*gain, "action")), signed_percent(number_at(*gain, "gain")), signed_percent(low),
+      action_words(text_at(*gain, "action")), signed_percent(number_at(*gain, "gain")), signed_percent(low),
       signed_percent(high));
   if (!sets.empty()) out += markup("<p>To try it: <code>{}</code></p>\n", sets);
   return out;
@@ -221,7 +227,7 @@ Html cost_card(const Json& report) {
                              number_at(report, "throughput.whole.mrays_per_second_at_clock"),
                              number_at(report, "config.engine.clock_mhz")));
   else if (const double speed = number_at(report, "host.rays_per_second"); speed > 0)
-    item("Time", fmt::format("{:.0f} ns on this host ({}rays/s)", 1e9 / speed, scaled(speed)));
+    item("Time", fmt::format("{} ns on this host ({}rays/s)", value_text(Json(1e9 / speed)), scaled(speed)));
   if (const double latency = number_at(report, "ray_time.latency"); latency > 0)
     item("Latency", fmt::format("{} cycles until it is shaded", value_text(Json(latency))));
   if (find(report, "tests.box.per_ray"))

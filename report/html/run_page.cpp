@@ -49,8 +49,11 @@ std::string run_page(const Json& report, const Picture& picture, const HeatMap& 
   std::string machine = machine_words(report);
   if (const double frames = number_at(report, "frames.count"); frames > 0)
     machine += fmt::format("; a series of {} frames, of which this page shows the last", frames);
-  return page_of(scene.empty() ? "Carousel: synthetic traffic" : "Carousel: " + scene, machine, sections, facts,
-                 (series ? packed_series(*series) : Html()) + packed_heat(report, heat));
+  const bool rays = !find(report, "traffic") && !find(report, "memory_trace") && !scene.empty();
+  return page_of(rays                           ? "Carousel: " + scene
+                 : find(report, "memory_trace") ? "Carousel: a trace of memory requests"
+                                                : "Carousel: synthetic traffic",
+                 machine, sections, facts, (series ? packed_series(*series) : Html()) + packed_heat(report, heat));
 }
 
 }  // namespace carousel::report::html

@@ -43,6 +43,10 @@ std::string verdict_sentence(const Json& report) {
     return fmt::format("The memory moved {:.3f} bytes a cycle, with a mean latency of {:.1f} cycles.",
                        number_at(report, "memory_trace.bytes_per_cycle"),
                        number_at(report, "memory_trace.latency.mean"));
+  if (find(report, "sampled"))
+    return "The limiting part is not searched for by a part of the frame; without sampling.fraction it is.";
+  if (const Json* asked = find(report, "config.engine.what_if"); asked && asked->is_boolean() && asked->get<bool>())
+    return "The limiting part was not searched for in this run.";
   if (find(report, "engine.cycles"))
     return "The search for the limiting part was switched off; engine.what_if: true turns it on.";
   return "A run of the native engine shows the queues of this host and no simulated time, so that no part of the "

@@ -153,6 +153,45 @@ TEST(RunPageText, TellsFirstWhatStandsBehindThePartThatLimits) {
   EXPECT_LT(text.find("DRAM moves data"), text.find("Shader workers are busy"));
 }
 
+TEST(RunPageText, SaysWhyNoLimitWasSearchedFor) {
+  Json report = small_run();
+  EXPECT_THAT(page(report), HasSubstr("The search for the limiting part was switched off"));
+  report["config"]["engine"]["what_if"] = true;
+  EXPECT_THAT(page(report), Not(HasSubstr("switched off")));
+  report["sampled"] = {{"paths", 10},
+                       {"frame_paths", 100},
+                       {"strata", 2},
+                       {"uses", Json::array()},
+                       {"cycles_per_ray", {{"estimate", 2.0}, {"low", 1.0}, {"high", 3.0}}}};
+  EXPECT_THAT(page(report), HasSubstr("without sampling.fraction it is"));
+}
+
+TEST(RunPageText, LeavesKeysAtTheStartOfAChangeAsTheyAre) {
+  Json report = small_run();
+  report["bottleneck"] = {{"limits", "shading_order"}, {"verdict", "shading_order"}, {"rivals", Json::array()}};
+  report["bottleneck"]["gains"] = {{{"name", "shading_order"},
+                                    {"action", "shading.sort: shader"},
+                                    {"gain", 0.5},
+                                    {"low", 0.4},
+                                    {"high", 0.6},
+                                    {"together", 1},
+                                    {"sets", {"shading.sort=shader"}}}};
+  EXPECT_THAT(page(report), HasSubstr("<strong>shading.sort: shader</strong>"));
+  report["bottleneck"]["gains"][0]["action"] = "twice shading.workers";
+  EXPECT_THAT(page(report), HasSubstr("<strong>Twice shading.workers</strong>"));
+}
+
+TEST(RunPageText, IsOfTrafficWhereThereIsNoScene) {
+  Json report = small_run();
+  report["scene"]["name"] = "none";
+  report["traffic"] = {{"packets", 7},
+                       {"delivered", 7},
+                       {"accepted", 0.1},
+                       {"offered", 0.1},
+                       {"latency", {{"mean", 20.0}, {"p50", 18}, {"p99", 40}, {"quantiles", Json::array()}}}};
+  EXPECT_THAT(page(report), HasSubstr("<h1>Carousel: synthetic traffic</h1>"));
+}
+
 TEST(RunPageText, SaysWithHowManySamplesAFrameIsLargeEnough) {
   Json report = small_run();
   report["config"]["image"] = {{"width", 160}, {"height", 100}, {"samples", 2}};

@@ -15,7 +15,7 @@ export function machine(context) {
   // A packet process that serves resources has no units, and so no use.
   const resourceUse = resources
     ? resources.rows.map((r) => (typeof r[useOf(resources)] === 'number' ? r[useOf(resources)] : null))
-    : new Array(facts.resources).fill(0);
+    : new Array(facts.resources).fill(null);  // of traffic: they test nothing
   const from = links ? links.column('from') : 0, to = links ? links.column('to') : 0;
   const ends = links ? links.rows.map((r) => [r[from], r[to]]) : [];
   const linkUse = links ? links.rows.map((r) => r[useOf(links)]) : [];
