@@ -48,7 +48,7 @@ bool is_sweep(const fs::path& folder) {
 std::string live_sweep_page(const fs::path& folder) {
   const std::vector<Finished> points = finished_points(folder);
   Table table{
-      "points", "Finished points, the newest first", {{"point"}, {"keys"}, {"cycles"}, {"limits"}, {"seconds", "s"}}};
+      "points", "Finished points, the newest first", {{"point"}, {"keys"}, {"cycles"}, {"limits"}, {"time", "s"}}};
   table.open = true;
   const std::vector<ResultColumn> columns = result_columns({});
   const auto result = [&](const char* name, const Json& report) -> Json {
