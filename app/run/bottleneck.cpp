@@ -228,7 +228,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                                    [&](const report::BottleneckGain& gain) { return gain.name == judged.limits; });
   std::vector<ringbus::WarmGain> others;
   for (const report::BottleneckGain& gain : judged.gains) {
-    if (ringbus::gains_of_cold_caches(gain.name) || gain.together > 1) continue;
+    if (ringbus::gains_of_cold_caches(gain.name) || gain.together > 1 || gain.low <= 0) continue;
     others.push_back({gain.gain, gain.low});
     if (judged.cold_caches->instead.empty() && gain.together == 1 && worth_naming(gain.gain, gain.low) &&
         gain.high >= memory->gain)

@@ -5,8 +5,8 @@
 #include <optional>
 
 #include "ringbus/cycle/messages/memory_messages.h"
-#include "ringbus/verdict/bottleneck_search.h"
 #include "ringbus/sampling/frame_lines.h"
+#include "ringbus/verdict/bottleneck_search.h"
 #include "ringbus/verdict/progress_blocks.h"
 #include "ringbus/verdict/steady_state.h"
 

@@ -54,6 +54,7 @@ class Search {
     pilots_.begin("pilot", first, out_.paths);
     screen(groups);
     note_phases();
+    seeds_ = {out_.paths, draw_, base_.cycle ? static_cast<double>(base_.cycle->cycles) : 0};
     while (out_.complete && !told() && look_again()) continue;
     if (out_.complete) judge();
     if (out_.complete) find_noise();
@@ -97,6 +98,12 @@ class Search {
     return results;
   }
 
+  std::vector<RunResult> simulate_relaxed(const std::vector<std::size_t>& classes) {
+    std::vector<const Config*> machines;
+    for (const std::size_t i : classes) machines.push_back(&what_ifs_[i].relaxed);
+    return simulate(machines);
+  }
+
   /// The run itself is the pilot if that is the whole frame. Returns true if nothing is left to simulate for it.
   bool base_is_the_run() {
     out_.whole = out_.paths >= run_.paths;
@@ -132,6 +139,7 @@ class Search {
         break;
       pilots_.expect_more(1);
     }
+    draw_ = taken;
     pilots_.take(taken);
   }
 
@@ -143,9 +151,8 @@ class Search {
     return {{&*base.cycle, base.rays_completed}, frame(), fill(more_slots), stops_ ? nullptr : &*run_.result.cycle};
   }
 
-  /// Simulates the pilot as configured and with each class that stands alone relaxed; then with those of each group
-  /// relaxed together that may gain enough by the run's ledger; then parts of the groups for which that may gain
-  /// enough, down to single classes, the most promising first, as far as the budget allows.
+  /// Simulates the pilot as configured and with each class that stands alone relaxed; then with each group; then with
+  /// parts of those that may gain enough, down to single classes, the most promising first, as the budget allows.
   void screen(std::vector<std::vector<std::size_t>> groups) {
     std::vector<std::vector<std::size_t>> later;
     for (const std::vector<std::size_t>& group : groups)
@@ -182,7 +189,6 @@ class Search {
           relaxed_[tried[k].front()] = std::move(results[k]);
       }
       // More of what stands idle costs nothing, so what all of them gain is at least what each does, but for chance.
-      // A pilot that is not like the run, and may not even tell that from nothing, tells less of each.
       std::stable_sort(several.begin(), several.end(),
                        [](const auto& a, const auto& b) { return a.second.value > b.second.value; });
       // A group that gains more than any class that was looked at alone leaves nothing to name.
@@ -218,9 +224,7 @@ class Search {
   }
 
   /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0), for a pilot or for
-  /// a part of the frame from its start. Where a pilot gains more than the run may, the interval lies lower by that;
-  /// and where it loses what more of a part hardly does, the interval's upper end is higher (gain_beyond()). What the
-  /// whole frame gains is known.
+  /// a part of the frame from its start. It lies within what the run allows, or higher where a pilot tells nothing.
   void note(std::size_t i, const Estimate& gain, std::size_t together, double part = 0) {
     const WhatIf& what = what_ifs_[i];
     const bool known = part >= 1 || (together == 1 && out_.whole);
@@ -249,48 +253,64 @@ class Search {
   bool look_again() {
     if (stops_ || out_.whole) return false;  // no run of the machine as configured; or its frame is known
     std::vector<std::size_t> worth = worth_a_second_look(out_.gains, kContenders);
+    if (larger_pilot(worth)) return true;
     const double part = next_part(worth);
     if (part <= 0) return false;
     const FrameBeginning beginning = beginning_of(*run_.result.cycle, part);
     pilots_.begin(worth.size(), beginning);
-    std::vector<const Config*> machines;
-    for (const std::size_t i : worth) machines.push_back(&what_ifs_[i].relaxed);
-    const std::vector<RunResult> results = simulate(machines);
+    const std::vector<RunResult> results = simulate_relaxed(worth);
     if (!out_.complete) return false;
     for (std::size_t k = 0; k < worth.size(); ++k)
       note(worth[k],
-           part < 1 ? gain_by_beginning(*run_.result.cycle, *results[k].cycle, beginning, fill(more_slots(worth[k])),
-                                        what_ifs_[worth[k]].part.how.keeps_shapes)
-                    : whole_foretelling().gain({&*results[k].cycle, results[k].rays_completed}, 0),
+           part < 1
+               ? gain_by_beginning(*run_.result.cycle, *results[k].cycle, beginning, fill(more_slots(worth[k])),
+                                   what_ifs_[worth[k]].part.how.keeps_shapes)
+               : Foretelling({&*run_.result.cycle, frame()}, frame(), fill()).gain({&*results[k].cycle, frame()}, 0),
            1, part);
     return true;
   }
 
-  /// The run as its own pilot.
-  Foretelling whole_foretelling() const { return {{&*run_.result.cycle, frame()}, frame(), fill(), nullptr}; }
-
-  /// True if there is nothing to add: it is sure which class to name, and the pilot is like the run, or the class
-  /// stands out in spite of the difference.
-  bool told() { return judge() && sure(out_.gains); }
-
-  /// The part of the frame from its start that takes so much of the run: of its cycles and of its rays.
-  double part_within(double taken) const {
-    if (taken <= 0) return 0;
-    return std::min({1.0, taken, part_of(*run_.result.cycle, taken * static_cast<double>(frame()))});
+  /// Simulates a larger pilot for these classes if the frame's beginning would not tell of its rest within what a
+  /// search is to take, and returns true then.
+  bool larger_pilot(std::vector<std::size_t> worth) {
+    const double left = kWanted - for_noise() - pilots_.taken();
+    const auto at_least = static_cast<double>(std::min(worth.size(), kFewest));
+    if (worth.empty() || left <= 0 || tells_of_the_rest(part_within(left / at_least))) return false;
+    for (std::size_t n = worth.size(); n >= std::min(worth.size(), kFewest); --n) {
+      const auto paths =
+          static_cast<std::uint64_t>(left / static_cast<double>(n + 1) * static_cast<double>(run_.paths));
+      if (paths < out_.paths + out_.paths / 2) continue;
+      worth.resize(n);
+      out_.paths = paths;
+      pilots_.begin("larger pilot", n + 1, paths);
+      simulate_base(n);
+      const std::vector<RunResult> results = simulate_relaxed(worth);
+      if (!out_.complete) return false;
+      for (std::size_t k = 0; k < n; ++k) note(worth[k], gain_of({worth[k]}, results[k]), 1);
+      return true;
+    }
+    return false;
   }
 
+  /// True if there is nothing to add: it is sure which class to name, and nothing speaks against it.
+  bool told() { return judge() && sure(out_.gains); }
+
+  /// What the runs for the noise are to take.
+  double for_noise() const { return budget_.of(seeds_.paths, static_cast<std::size_t>(noise_seeds_)); }
+
+  bool tells_of_the_rest(double part) const { return tells_of_rest(*run_.result.cycle, part, fill()); }
+  double part_within(double taken) const { return part_that_takes(*run_.result.cycle, frame(), taken); }
+
   /// The part of the frame that is to be simulated for these classes, or for fewer of them; 0 if the budget has none
-  /// that tells more than is known. It is for all that may be the best if that keeps within what a search is to take.
-  /// Beyond that it is for the two most promising if one of them may be named wrongly, and as large as possible for one
-  /// alone if none is to be named.
+  /// that tells more than is known. Beyond what a search is to take it is for two of them at most, if none is to be
+  /// named or another may be the best.
   double next_part(std::vector<std::size_t>& worth) const {
     constexpr double kMore = 1.5, kFills = 3;
-    const auto noise = budget_.of(out_.paths, static_cast<std::size_t>(noise_seeds_));
     const double fills = part_of(*run_.result.cycle, kFills * static_cast<double>(fill()));
     const auto try_within = [&](double budget, std::size_t least, std::size_t most) {
       for (std::size_t n = std::min(worth.size(), most); n >= least && n > 0; --n) {
         const double part = part_within((budget - pilots_.taken()) / static_cast<double>(n));
-        if (part < std::max(kLeastPart, fills)) continue;
+        if (part < std::max(kLeastPart, fills) || !tells_of_the_rest(part)) continue;
         std::vector<std::size_t> some = worth;
         std::erase_if(some, [&](std::size_t i) {
           const double known = out_.gains[i].frame;
@@ -303,11 +323,11 @@ class Search {
       }
       return 0.0;
     };
-    if (const double part = try_within(kWanted - noise, std::min(worth.size(), kFewest), kContenders); part > 0)
+    if (const double part = try_within(kWanted - for_noise(), std::min(worth.size(), kFewest), kContenders); part > 0)
       return part;
     const std::optional<std::size_t> named = named_gain(out_.gains);
-    if (named && !may_be_beaten(out_.gains, *named)) return 0;
-    return try_within(kWithFrame, 1, named ? kFewest : 1);
+    if (named && out_.unlike.empty() && !may_be_beaten(out_.gains, *named)) return 0;
+    return try_within(kWithFrame, 1, kFewest);
   }
 
   /// Simulates a pilot with other seeds: its places in the picture are the same, and their rays are others. It is the
@@ -315,18 +335,19 @@ class Search {
   void find_noise() {
     if (noise_seeds_ == 0) return;
     const auto seeds = static_cast<std::size_t>(noise_seeds_);
-    const std::uint64_t twice = 2 * out_.paths;
+    const std::uint64_t twice = 2 * seeds_.paths;
     const bool larger = twice <= run_.paths && pilots_.taken() + budget_.of(twice, seeds + 1) <= kWithNoise;
-    const std::uint64_t paths = larger ? twice : out_.paths;
+    const std::uint64_t paths = larger ? twice : seeds_.paths;
     if (pilots_.taken() + budget_.of(paths, seeds) > kWithFrame) return;
     pilots_.begin("other seeds", seeds + (larger ? 1 : 0), paths);
+    pilots_.take(seeds_.draw);
     std::deque<Config> machines;
     std::vector<const Config*> which;
     if (larger) which.push_back(&config_);
     for (std::uint64_t k = 1; k <= noise_seeds_; ++k)
       which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
     std::vector<double> cycles;
-    if (!larger) cycles.push_back(static_cast<double>(base_.cycle->cycles));
+    if (!larger) cycles.push_back(seeds_.cycles);
     for (const RunResult& result : simulate(which))
       if (out_.complete) cycles.push_back(static_cast<double>(result.cycle->cycles));
     if (!out_.complete) return;
@@ -335,8 +356,7 @@ class Search {
   }
 
   /// Compares the pilot's cycles and busy times, as foretold for the frame, with those of the run. Returns true if they
-  /// are alike, or if a class is worth naming in spite of the difference, which widens its interval, unless the cycles
-  /// differ by much.
+  /// are alike, or if a class stands out in spite of the difference.
   bool judge() {
     const Estimate cycles = foretelling(base_).cycles();
     out_.uncertainty = (cycles.high - cycles.value) / cycles.value;
@@ -354,9 +374,10 @@ class Search {
   const SearchedRun& run_;
   SearchBudget budget_;
   PilotRuns pilots_;
-  bool stops_ = false, cold_ = false;  // a resource; caches of the run
-  bool fixed_work_ = false;            // of tests and shading
-  std::uint64_t noise_seeds_ = 0;
+  bool stops_ = false, cold_ = false;         // a resource; caches of the run
+  bool fixed_work_ = false;                   // of tests and shading
+  std::uint64_t noise_seeds_ = 0, draw_ = 0;  // draw_: of the present pilot
+  BasePilot seeds_;                           // the first pilot
   std::vector<WhatIf> what_ifs_;
   std::map<std::size_t, RunResult> relaxed_;  // by index of what_ifs_
   RunResult base_;

@@ -68,6 +68,47 @@ class BusyBlocks {
   std::vector<double> shares_;  // block by block
 };
 
+/// Blocks of a frame's beginning, and those of its rest, which are as long.
+class Blocks {
+ public:
+  Blocks(const CycleResult& run, const FrameBeginning& beginning, std::uint64_t fill)
+      : length_(beginning.part * static_cast<double>(run.cycles) / kProgressBlocks),
+        rest_(static_cast<std::size_t>(std::lround((1 / beginning.part - 1) * kProgressBlocks))),
+        busy_(run, length_, kProgressBlocks + rest_) {
+    for (std::size_t block = 1; block <= kProgressBlocks; ++block) {
+      completed_.push_back(at_cycle(run, static_cast<double>(block) * length_, completed_of));
+      if (completed_.back() < static_cast<double>(fill)) filling_ = std::clamp(block, filling_, kProgressBlocks / 2);
+    }
+  }
+  double length() const { return length_; }
+  /// That say nothing of the rest.
+  std::size_t filling() const { return filling_; }
+  /// Rays that the run had completed at the end of a block.
+  double completed(std::size_t block) const { return completed_[block]; }
+  /// The mean of what blocks of the rest are expected to have, by what those of the beginning have and by what is
+  /// expected of one that is like none.
+  double of_rest(const std::vector<double>& values, double of_unknown) const {
+    double out = 0;
+    for (std::size_t block = kProgressBlocks; block < kProgressBlocks + rest_; ++block) {
+      double sum = kOfMean * of_unknown, weights = kOfMean;
+      for (std::size_t like = filling_; like < kProgressBlocks; ++like) {
+        const double weight = busy_.likeness(block, like);
+        sum += weight * values[like];
+        weights += weight;
+      }
+      out += sum / weights / static_cast<double>(rest_);
+    }
+    return out;
+  }
+
+ private:
+  double length_;
+  std::size_t rest_;
+  BusyBlocks busy_;
+  std::vector<double> completed_;
+  std::size_t filling_ = kProgressBlocks / 8;
+};
+
 }  // namespace
 
 FrameBeginning beginning_of(const CycleResult& run, double part) {
@@ -78,50 +119,46 @@ double part_of(const CycleResult& run, double rays) {
   return std::min(1.0, when(run, rays) / static_cast<double>(run.cycles));
 }
 
+double unknown_rest(const CycleResult& run, const FrameBeginning& beginning, std::uint64_t fill) {
+  return Blocks(run, beginning, fill).of_rest(std::vector<double>(kProgressBlocks, 0.0), 1);
+}
+
+bool tells_of_rest(const CycleResult& run, double part, std::uint64_t fill) {
+  constexpr double kMostUnknown = 0.25;
+  return part >= 1 || (1 - part) * unknown_rest(run, beginning_of(run, part), fill) <= kMostUnknown;
+}
+
+double part_that_takes(const CycleResult& run, std::uint64_t rays, double taken) {
+  return taken <= 0 ? 0 : std::min({1.0, taken, part_of(run, taken * static_cast<double>(rays))});
+}
+
 Estimate gain_by_beginning(const CycleResult& run, const CycleResult& relaxed, const FrameBeginning& beginning,
                            std::uint64_t fill, bool warms) {
-  constexpr std::size_t kBlocks = 16;
   constexpr double kSteps = 0.35, kTrend = 1.5, kUnknown = 0.5, kLittle = 0.01, kSeeds = 3.1, kLeast = 0.05;
-  const double all = static_cast<double>(run.cycles), length = beginning.part * all / kBlocks;
+  const Blocks blocks(run, beginning, fill);
   std::vector<double> taken;  // of the relaxed machine's cycles for each of the run's
   double reached = 0;
-  std::size_t filling = kBlocks / 8;
-  for (std::size_t block = 1; block <= kBlocks; ++block) {
-    const double completed = at_cycle(run, static_cast<double>(block) * length, completed_of),
-                 now = when(relaxed, completed);
-    taken.push_back((now - reached) / length);
+  for (std::size_t block = 0; block < kProgressBlocks; ++block) {
+    const double now = when(relaxed, blocks.completed(block));
+    taken.push_back((now - reached) / blocks.length());
     reached = now;
-    if (completed < static_cast<double>(fill)) filling = std::clamp(block, filling, kBlocks / 2);
   }
-  const auto full = taken.begin() + static_cast<std::ptrdiff_t>(filling);
+  const auto full = taken.begin() + static_cast<std::ptrdiff_t>(blocks.filling());
   const double count = static_cast<double>(taken.end() - full), mean = std::accumulate(full, taken.end(), 0.0) / count;
   double deviation = 0, steps = 0;
   for (auto at = full; at != taken.end(); ++at) {
     deviation += (*at - mean) * (*at - mean) / count;
     if (at != full) steps += (*at - at[-1]) * (*at - at[-1]) / (2 * (count - 1));
   }
-  const std::size_t rest = static_cast<std::size_t>(std::lround((1 / beginning.part - 1) * kBlocks));
-  const BusyBlocks busy(run, length, kBlocks + rest);
-  double of_rest = 0, unknown = 0;
-  for (std::size_t block = kBlocks; block < kBlocks + rest; ++block) {
-    double sum = kOfMean * mean, weights = kOfMean;
-    for (std::size_t like = filling; like < kBlocks; ++like) {
-      const double weight = busy.likeness(block, like);
-      sum += weight * taken[like];
-      weights += weight;
-    }
-    of_rest += sum / weights / static_cast<double>(rest);
-    unknown += kOfMean / weights / static_cast<double>(rest);
-  }
   const auto middle = full + (taken.end() - full) / 2;
-  const double left = 1 - beginning.part,
-               still = warms ? left * std::max(0.0,
-                                               std::accumulate(full, middle, 0.0) / static_cast<double>(middle - full) -
-                                                   std::accumulate(middle, taken.end(), 0.0) /
-                                                       static_cast<double>(taken.end() - middle))
-                             : 0,
-               time = std::max(kLeast, beginning.part * reached / (kBlocks * length) + left * of_rest),
-               seeds = kSeeds * std::sqrt(steps * beginning.part / kBlocks),
+  const auto mean_of = [](auto begin, auto end) {
+    return std::accumulate(begin, end, 0.0) / static_cast<double>(end - begin);
+  };
+  const double left = 1 - beginning.part, unknown = unknown_rest(run, beginning, fill),
+               still = warms ? left * std::max(0.0, mean_of(full, middle) - mean_of(middle, taken.end())) : 0,
+               time = std::max(kLeast, beginning.part * reached / (kProgressBlocks * blocks.length()) +
+                                           left * blocks.of_rest(taken, (1 + mean) / 2)),
+               seeds = kSeeds * std::sqrt(steps * beginning.part / kProgressBlocks),
                trend = kTrend * std::sqrt(std::max(0.0, deviation - steps)),
                error = std::hypot(std::hypot(left * kSteps * std::sqrt(steps), left * trend), left * kUnknown * unknown,
                                   seeds) +

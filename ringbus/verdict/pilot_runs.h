@@ -83,6 +83,12 @@ inline std::uint64_t first_paths(const Config& config, std::uint64_t paths, cons
 /// The machine with the picture's k-th other seed, of the same range, far from those that users count up from.
 Config with_other_seed(const Config& machine, std::uint64_t k);
 
+/// A pilot with the machine as configured.
+struct BasePilot {
+  std::uint64_t paths = 0, draw = 0;
+  double cycles = 0;
+};
+
 /// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
 /// machine, and others for another `draw`.
 using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths, std::uint64_t draw)>;

@@ -165,10 +165,10 @@ std::string versus_page(const Json& versus) {
   Html splits;
   for (const char* const search : {"search", "twin_search"})
     if (const Json* trials = find(versus, std::string(search) + ".trials"))
-      splits += table_of_rows(search, search == std::string("search") ? "Of this machine" : "Of the twin at equal area",
-                              *trials,
-                              [](const Json& row) { return singular(fmt::format("{} resources", row["resources"].get<int>())); },
-                              {"cycles", "nj_per_ray", "mm2"})
+      splits += table_of_rows(
+                    search, search == std::string("search") ? "Of this machine" : "Of the twin at equal area", *trials,
+                    [](const Json& row) { return singular(fmt::format("{} resources", row["resources"].get<int>())); },
+                    {"cycles", "nj_per_ray", "mm2"})
                     .html();
   Html glance;
   for (std::size_t i = 0; i < versus["lines"].size(); ++i)

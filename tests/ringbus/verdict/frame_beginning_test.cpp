@@ -47,10 +47,10 @@ TEST(FrameBeginning, AnEvenGainIsThatOfTheFrame) {
   const cycle::CycleResult run = run_of({{1000, 20, 0.5}}), relaxed = run_of({{1000, 10, 0.5}});
   for (const double part : {0.2, 0.5}) {
     const Estimate gain = gain_by_beginning(run, relaxed, beginning_of(run, part), 0);
-    EXPECT_NEAR(gain.value, 1, 1e-6) << part;
+    EXPECT_NEAR(gain.value, 1, 0.06) << part;
     EXPECT_LT(gain.low, 1);
     EXPECT_GT(gain.high, 1);
-    EXPECT_LT(width(gain), 0.2);
+    EXPECT_LT(width(gain), 0.25);
   }
 }
 
@@ -72,6 +72,23 @@ TEST(FrameBeginning, TheRestTakesWhatBlocksTookThatWereAsBusy) {
   EXPECT_NEAR(gain.value, real, 0.04) << "all of the rest as the beginning: 33 %";
   EXPECT_LE(gain.low, real);
   EXPECT_GE(gain.high, real);
+}
+
+// A third of shading, and then none: a beginning within the first third knows nothing of the rest.
+TEST(FrameBeginning, TellsOfARestThatItsBlocksAreLike) {
+  const cycle::CycleResult run = run_of({{800, 10, 0.9}, {1600, 10, 0.1}});
+  EXPECT_FALSE(tells_of_rest(run, 0.2, 0));
+  EXPECT_TRUE(tells_of_rest(run, 0.5, 0));
+  EXPECT_TRUE(tells_of_rest(run_of({{2400, 10, 0.9}}), 0.2, 0));
+  EXPECT_GT(unknown_rest(run, beginning_of(run, 0.25), 0), 0.8);
+  EXPECT_LT(unknown_rest(run, beginning_of(run, 0.5), 0), 0.1);
+}
+
+TEST(FrameBeginning, TakesSoMuchOfCyclesAndOfRays) {
+  const cycle::CycleResult run = run_of({{100, 10, 1}, {100, 30, 0}});  // half of the rays in a quarter of the time
+  EXPECT_NEAR(part_that_takes(run, 200, 0.5), 0.25, 1e-12);
+  EXPECT_EQ(part_that_takes(run, 200, 1.2), 1);
+  EXPECT_EQ(part_that_takes(run, 200, -0.1), 0);
 }
 
 // Rest that is like no block of the beginning may take any time.
@@ -102,8 +119,9 @@ TEST(FrameBeginning, ATrendWidensTheInterval) {
 TEST(FrameBeginning, WhatAFillingMachineTakesSaysNothingOfTheRest) {
   const cycle::CycleResult run = run_of({{2000, 10, 0.5}}), relaxed = run_of({{200, 10, 0.5}, {800, 5, 0.5}});
   const FrameBeginning half = beginning_of(run, 0.5);
-  EXPECT_NEAR(gain_by_beginning(run, relaxed, half, 220).value, 20000 / (2000 + 9000.0) - 1, 0.02);
-  EXPECT_LT(gain_by_beginning(run, relaxed, half, 0).value, 0.8);
+  const double known = gain_by_beginning(run, relaxed, half, 220).value;
+  EXPECT_NEAR(known, 20000 / (2000 + 9000.0) - 1, 0.05);
+  EXPECT_GT(known, gain_by_beginning(run, relaxed, half, 0).value + 0.01);
 }
 
 }  // namespace
