@@ -24,8 +24,8 @@ struct AreaSplit {
 };
 
 /// Returns the machine of a split with as many resources as area.budget_mm2 holds. Its area.fit is refuse, and it has
-/// no aim. What all resources share grows with them. None if no number of resources is within the budget, if a part
-/// would be out of its range, or if a part is as large as a step nearer to the configuration.
+/// no aim. What all resources share grows with them. It returns none if no number of resources is within the budget, if
+/// a part would be out of its range, or if a part is as large as a step nearer to the configuration.
 std::optional<Config> machine_of(const LocatedConfig& given, const SceneFacts& scene, const AreaSplit& split);
 
 }  // namespace carousel::app

@@ -56,7 +56,7 @@ Html limits_card(const Json& report) {
   return out;
 }
 
-/// What a sentence of the card is about.
+/// The subject of a sentence of the card.
 enum class Topic : std::uint8_t { kRays, kTests, kLinks, kMemory, kPackets, kShading };
 
 Topic topic_of(std::string_view part) {

@@ -8,7 +8,7 @@
 
 namespace carousel::report::html {
 
-/// What the rays of each pixel took.
+/// The costs of each pixel's rays.
 struct HeatMap {
   Picture picture;     ///< their cycles, few dark; shown without scripts
   std::string rows{};  ///< heat.csv, as `carousel run --heat` writes it; empty: there is none

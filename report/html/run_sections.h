@@ -43,7 +43,7 @@ Html rays_section(const nlohmann::ordered_json& report, const nlohmann::ordered_
 Html tests_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
 Html effects_section(const nlohmann::ordered_json& report);
 Html accuracy_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);
-/// What costs nothing in this run, with the keys that charge it, and keys that have no effect in it.
+/// The parts that cost nothing in this run, with the keys that charge them, and the keys that have no effect in it.
 Html charges_section(const nlohmann::ordered_json& report);
 Html configuration_section(const nlohmann::ordered_json& report);
 Html values_section(const nlohmann::ordered_json& report, const nlohmann::ordered_json& schema);

@@ -44,7 +44,7 @@ int side_of(const Json& report, const char* key) {
   return static_cast<int>(std::clamp(number_at(report, std::string("config.image.") + key), 0.0, 1e6));
 }
 
-/// Those of the page; none if there are none, or more than it should hold.
+/// Returns the page's numbers; none if there are none, or if there are more than a page should hold.
 Numbers shown_numbers(const Json& report, const HeatMap& map) {
   const std::size_t pixels =
       static_cast<std::size_t>(side_of(report, "width")) * static_cast<std::size_t>(side_of(report, "height"));

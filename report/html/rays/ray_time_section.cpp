@@ -56,7 +56,7 @@ std::vector<Counter<RayStageCounts>> stages_of(const Json& time) {
 }
 
 /// The bars of `kinds` without scripts, as parts of the longest: `table` has a row's name, rays and all cycles first,
-/// and its stages then. What has no hue of its own is added up.
+/// and its stages then. Stages without a hue of their own are added up.
 Html still_kinds(const Table& table) {
   constexpr std::size_t kFirst = 3, kMost = 10;
   double longest = 0;
