@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 
 #include "core/system/error.h"
 #include "ringbus/cycle/progress_log.h"
@@ -19,7 +20,7 @@ namespace cycle {
 namespace {
 
 /// Runs a simulated machine to its end and collects its counts.
-class CycleRun {
+class CycleRun final : public CycleSimulation {
  public:
   CycleRun(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
            const RunOptions& options)
@@ -27,40 +28,48 @@ class CycleRun {
         options_(options),
         machine_(config, accel, scene_size, workload, options.statistics,
                  {options.trace, most_samples(options.samples, series_counters(config.topology)), options.timeline,
-                  options.ray, options.memory, options.ray_times, options.heat}) {
+                  options.ray, options.memory, options.ray_times, options.heat}),
+        parts_(machine_.share_out(options.threads)),
+        wakeups_(parts_) {
     machine_.warm(options.warm);
+    machine_.connect(wakeups_);
+    if (options.meter != nullptr)
+      options.meter->begin(machine_.channels().rows(), most_samples(options.samples, series_counters(config.topology)));
   }
 
-  RunResult run() {
+  bool run_until(std::uint64_t completed) override {
     const auto start = std::chrono::steady_clock::now();
-    const std::vector<std::vector<Agent*>> parts = machine_.share_out(options_.threads);
     auto last_report = start;
-    bool stopped = false;
-    WakeupTable wakeups(parts);
-    machine_.connect(wakeups);
+    stopped_ = false;
     const ClockRatio to_fastest = machine_.network().clocks().to_fastest(0);
     const auto keep_running = [&](Cycle reached) {
       const Cycle at = to_fastest.before(reached);
-      stopped = options_.stop.stop_requested() || machine_.shading().completed() >= options_.enough;
-      note_progress(at, stopped);
+      stopped_ = options_.stop.stop_requested() || machine_.shading().completed() >= completed;
+      note_progress(at, stopped_);
       if (machine_.recorder() != nullptr) machine_.recorder()->limit();
       const auto now = std::chrono::steady_clock::now();
       if (options_.progress && now - last_report > std::chrono::milliseconds(200)) {
         last_report = now;
         options_.progress(machine_.shading().completed());
       }
-      return !stopped;
+      return !stopped_;
     };
     if (options_.meter == nullptr)
-      run_windows(parts, wakeups, machine_.lookahead(), sharing(), keep_running);
+      run_windows(parts_, wakeups_, machine_.lookahead(), sharing(), keep_running);
     else
-      run_metered(parts, wakeups, keep_running, *options_.meter);
-    const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-    if (!stopped) check_at_rest();
-    RunResult out = result(last_event() + 1, !stopped);
-    out.complete = !stopped;
-    out.wall_seconds = wall.count();
-    out.threads = parts.size();
+      run_metered(keep_running, *options_.meter);
+    wall_ += std::chrono::steady_clock::now() - start;
+    if (!stopped_) check_at_rest();
+    return !stopped_;
+  }
+
+  const std::vector<ProgressSample>& progress() const override { return log_.samples(); }
+
+  RunResult result() override {
+    RunResult out = result(last_event() + 1, !stopped_);
+    out.complete = !stopped_;
+    out.wall_seconds = wall_.count();
+    out.threads = parts_.size();
     return out;
   }
 
@@ -69,16 +78,14 @@ class CycleRun {
   Sharing sharing() const { return config_.engine.threads ? Sharing::kAlways : Sharing::kWhenFaster; }
 
   /// A cycle of the resources begins with the last cycle of the fastest clock that is not after it.
-  void run_metered(const std::vector<std::vector<Agent*>>& parts, WakeupTable& wakeups,
-                   const std::function<bool(Cycle)>& keep_running, EnergyMeter& meter) {
-    meter.begin(machine_.channels().rows(), most_samples(options_.samples, series_counters(config_.topology)));
+  void run_metered(const std::function<bool(Cycle)>& keep_running, EnergyMeter& meter) {
     const ClockRatio to_fastest = machine_.network().clocks().to_fastest(0);
     const auto look = [&](Cycle) {
       read_energy(machine_, energy_);
       meter.read(energy_);
       return to_fastest.floor_to_network(meter.next());
     };
-    run_windows(parts, wakeups, machine_.lookahead(), sharing(), keep_running, look,
+    run_windows(parts_, wakeups_, machine_.lookahead(), sharing(), keep_running, look,
                 to_fastest.floor_to_network(meter.next()));
   }
 
@@ -336,6 +343,10 @@ class CycleRun {
   const Config& config_;
   const RunOptions& options_;
   SimulatedMachine machine_;
+  std::vector<std::vector<Agent*>> parts_;
+  WakeupTable wakeups_;
+  bool stopped_ = false;
+  std::chrono::duration<double> wall_{0};
   ProgressLog log_;
   EnergyEvents energy_;
   std::optional<ProgressSample> all_begun_;
@@ -347,7 +358,14 @@ class CycleRun {
 
 RunResult run_cycle(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                     const RunOptions& options) {
-  return cycle::CycleRun(config, accel, scene_size, workload, options).run();
+  cycle::CycleRun run(config, accel, scene_size, workload, options);
+  run.run_until(std::numeric_limits<std::uint64_t>::max());
+  return run.result();
+}
+
+std::unique_ptr<CycleSimulation> begin_cycle(const Config& config, const accel::Accel& accel, float scene_size,
+                                             Workload& workload, const RunOptions& options) {
+  return std::make_unique<cycle::CycleRun>(config, accel, scene_size, workload, options);
 }
 
 }  // namespace carousel::ringbus

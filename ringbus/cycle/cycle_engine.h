@@ -1,5 +1,9 @@
 #pragma once
 
+#include <cstdint>
+#include <memory>
+#include <vector>
+
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/workload.h"
@@ -13,5 +17,23 @@ namespace carousel::ringbus {
 /// machine gets stuck, with who waits for whom; exceptions of the workload pass through.
 RunResult run_cycle(const Config& config, const accel::Accel& accel, float scene_size, Workload& workload,
                     const RunOptions& options);
+
+/// A run of the machine that goes on in parts.
+class CycleSimulation {
+ public:
+  virtual ~CycleSimulation() = default;
+
+  /// Goes on until so many rays are completed, or a few more, or all. Returns true at the end of the workload. The
+  /// parts that a run is cut into change nothing but the places of the samples of its progress.
+  virtual bool run_until(std::uint64_t completed) = 0;
+  /// So far; the last sample is that of the end of the last part.
+  virtual const std::vector<cycle::ProgressSample>& progress() const = 0;
+  /// What the run has come to. Once, and nothing goes on after it.
+  virtual RunResult result() = 0;
+};
+
+/// As run_cycle, but nothing runs yet. Keeps references to its arguments.
+std::unique_ptr<CycleSimulation> begin_cycle(const Config& config, const accel::Accel& accel, float scene_size,
+                                             Workload& workload, const RunOptions& options);
 
 }  // namespace carousel::ringbus

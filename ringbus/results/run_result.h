@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
-#include <limits>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -42,10 +41,9 @@ struct RankResult {
 
 struct RunOptions {
   std::size_t threads = 1;
-  bool statistics = true;                                            ///< false: nothing is counted at the resources
-  bool link_statistics = true;                                       ///< native: counts at the links too
-  std::stop_token stop;                                              ///< ends the run early; it is then incomplete
-  std::uint64_t enough = std::numeric_limits<std::uint64_t>::max();  ///< cycle: so many completed rays do so, too
+  bool statistics = true;                        ///< false: nothing is counted at the resources
+  bool link_statistics = true;                   ///< native: counts at the links too
+  std::stop_token stop;                          ///< ends the run early; it is then incomplete
   std::chrono::milliseconds stuck_after{10000};  ///< native: a SimulationError after no progress for so long
   std::size_t samples = 0;                       ///< most samples of the time series; 0: there is none
   TimelineOptions timeline{};                    ///< slices of time that are recorded

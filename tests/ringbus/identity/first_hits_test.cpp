@@ -296,7 +296,7 @@ TEST(FirstHits, TheBottleneckIsFoundWithoutCameraRays) {
   const auto raster = shading::rasterize_first_hits(scene, config, nullptr, *make_sequential_executor());
   const accel::Accel accel = accel::build(scene, config.bvh, *make_sequential_executor());
   std::deque<shading::PathSample> samples;
-  const auto frame = [&](const Config& machine, std::uint64_t paths, std::uint64_t = 0) {
+  const auto frame = [&](const Config& machine, std::uint64_t paths, std::uint64_t = 0, std::uint64_t = 0) {
     auto tracer = std::make_unique<shading::PathTracer>(scene, machine, 60, 1);
     tracer->set_first_hits(&raster);
     if (paths < kPaths) {
