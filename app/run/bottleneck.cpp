@@ -7,6 +7,7 @@
 #include <mutex>
 #include <numeric>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -76,8 +77,8 @@ class PilotPlaces {
   PilotPlaces(const Prepared& prepared, const RenderJob& job, const ringbus::RunResult& run)
       : prepared_(prepared), job_(job), run_(run) {}
 
-  /// Null if that is the whole frame. Several threads may call.
-  const shading::PathSample* of(std::uint64_t paths, std::uint64_t draw) {
+  /// `more`: as PilotFactory. Null if that is the whole frame. Several threads may call.
+  const shading::PathSample* of(std::uint64_t paths, std::uint64_t more, std::uint64_t draw) {
     if (paths >= job_.first_rays()) return nullptr;
     const std::lock_guard lock(mutex_);
     const Config& config = prepared_.config();
@@ -86,22 +87,26 @@ class PilotPlaces {
       work_ = job_.survey(prepared_, config, job_.first_hits(), kOneIn, kLeastPaths, seed);
       add_times(work_, job_, run_);
     }
-    auto at = samples_.find({paths, draw});
-    if (at == samples_.end())
-      at = samples_.emplace(std::pair(paths, draw), job_.draw(paths, ringbus::slots_of(config), seed, work_, draw))
-               .first;
+    auto at = samples_.find({paths, more, draw});
+    if (at == samples_.end()) {
+      const std::uint64_t slots = ringbus::slots_of(config);
+      shading::PathSample sample = job_.draw(paths, slots, seed, work_, draw);
+      if (more > 0) sample = shading::followed_by(sample, job_.draw(paths, slots, seed, {}, draw + kOthers), more);
+      at = samples_.emplace(std::tuple(paths, more, draw), std::move(sample)).first;
+    }
     return &at->second;
   }
 
  private:
   static constexpr std::uint64_t kOneIn = 16, kLeastPaths = 1 << 14;  // that the survey traces
+  static constexpr std::uint64_t kOthers = 1 << 20;                   // a draw that no search comes to
 
   const Prepared& prepared_;
   const RenderJob& job_;
   const ringbus::RunResult& run_;
   std::mutex mutex_;
   RenderJob::PieceWork work_;
-  std::map<std::pair<std::uint64_t, std::uint64_t>, shading::PathSample> samples_;  // by number of paths, and draw
+  std::map<std::tuple<std::uint64_t, std::uint64_t, std::uint64_t>, shading::PathSample> samples_;  // by what of() has
 };
 
 /// Some of the rays of a render job alone, or all of them; their picture is thrown away.
@@ -186,10 +191,10 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   PilotPlaces places(prepared, job, run);
   const ringbus::Bottleneck found = ringbus::find_bottleneck(
       prepared.config(), prepared.accel, prepared.scene_size(),
-      [&](const Config& machine, std::uint64_t paths, std::uint64_t draw) {
+      [&](const Config& machine, std::uint64_t paths, std::uint64_t more, std::uint64_t draw) {
         return std::make_unique<PilotWorkload>(
             prepared, machine, machine.image.seed == prepared.config().image.seed ? job.first_hits() : nullptr,
-            places.of(paths, draw));
+            places.of(paths, more, draw));
       },
       searched, options, show);
   noise = noise_of(found, run);

@@ -12,6 +12,7 @@
 #include "ringbus/verdict/cold_caches.h"
 #include "ringbus/verdict/foretell.h"
 #include "ringbus/verdict/frame_beginning.h"
+#include "ringbus/verdict/frame_race.h"
 #include "ringbus/verdict/phases.h"
 #include "ringbus/verdict/pilot_likeness.h"
 #include "ringbus/verdict/pilot_runs.h"
@@ -31,7 +32,7 @@ class Search {
         accel_(accel),
         run_(run),
         budget_{run.paths, run.result.rays_completed},
-        pilots_(accel, scene_size, make_pilot, run, options, observe) {
+        pilots_(accel, scene_size, make_pilot, run, slots_of(config), options, observe) {
     // The bottleneck is that of the whole machine, before a resource stops.
     stops_ = config_.faults.resource.kind == FaultsConfig::Resource::Kind::kStop;
     if (stops_) config_.faults.resource = {};
@@ -53,8 +54,8 @@ class Search {
     }
     pilots_.begin("pilot", first, out_.paths);
     screen(groups);
-    note_phases();
-    seeds_ = {out_.paths, draw_, base_.cycle ? static_cast<double>(base_.cycle->cycles) : 0};
+    if (out_.complete) out_.phases = gain_phases(base_, what_ifs_, relaxed_);
+    seeds_ = {out_.paths, draw_, base_.cycle ? pilots_.cycles(*base_.cycle) : 0};
     while (out_.complete && !told() && look_again()) continue;
     if (out_.complete) judge();
     if (out_.complete) find_noise();
@@ -92,10 +93,14 @@ class Search {
 
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines) {
     std::vector<RunResult> results = pilots_.simulate(machines);
+    note_cost();
+    return results;
+  }
+
+  void note_cost() {
     out_.complete &= pilots_.complete();
     out_.simulated = pilots_.simulated_rays();
     out_.taken = pilots_.taken();
-    return results;
   }
 
   std::vector<RunResult> simulate_relaxed(const std::vector<std::size_t>& classes) {
@@ -166,6 +171,10 @@ class Search {
       std::vector<const Config*> machines;
       for (std::size_t k = 0; k < groups.size() && (round < 2 || affords(machines.size() + 1, budget)); ++k) {
         const std::vector<std::size_t> group = groups[k];
+        if (!pilots_.drains() && group.size() == 1 && more_slots(group.front())) {
+          look_at_slots(group.front());
+          continue;
+        }
         std::vector<const WhatIf*> members;
         for (const std::size_t i : group) members.push_back(&what_ifs_[i]);
         std::optional<Config> machine =
@@ -200,21 +209,16 @@ class Search {
     }
   }
 
-  /// Where in the pilot which class limits, of those that were relaxed alone.
-  void note_phases() {
-    std::vector<std::size_t> classes;
-    std::vector<PilotRun> runs;
-    for (const auto& [i, relaxed] : relaxed_) {
-      classes.push_back(i);
-      runs.push_back({&*relaxed.cycle, relaxed.rays_completed});
-    }
+  /// A machine with more ray slots has more rays under way when another is done with the pilot's, and those of it that
+  /// were completed are the short ones. So both simulate the pilot to its end.
+  void look_at_slots(std::size_t i) {
+    std::vector<RunResult> results = pilots_.simulate_to_the_end({&config_, &what_ifs_[i].relaxed});
+    note_cost();
     if (!out_.complete) return;
-    for (const FramePhase& phase : frame_phases({&*base_.cycle, base_.rays_completed}, runs)) {
-      GainPhase& out = out_.phases.emplace_back(GainPhase{phase.begin, phase.end, phase.time, "", "", phase.gain});
-      if (phase.best == kNoClass) continue;
-      out.name = what_ifs_[classes[phase.best]].name();
-      out.action = what_ifs_[classes[phase.best]].part.action;
-    }
+    const Estimate gain =
+        foretelling(results.front(), true).gain({&*results.back().cycle, results.back().rays_completed}, off());
+    note(i, of_few_slots(gain), 1);
+    relaxed_[i] = std::move(results.back());
   }
 
   void divide(const std::vector<std::size_t>& group, std::vector<std::vector<std::size_t>>& parts) {
@@ -223,19 +227,22 @@ class Search {
     pilots_.expect_more(own.size());
   }
 
+  /// Pilots begin with warm caches, and tell nothing of this class then.
+  bool gains_of_cold(std::size_t i) const { return cold_ && gains_of_cold_caches(what_ifs_[i].name()); }
+
   /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0), for a pilot or for
   /// a part of the frame from its start. It lies within what the run allows, or higher where a pilot tells nothing.
   void note(std::size_t i, const Estimate& gain, std::size_t together, double part = 0) {
     const WhatIf& what = what_ifs_[i];
     const bool known = part >= 1 || (together == 1 && out_.whole);
-    const bool cold = cold_ && gains_of_cold_caches(what.name());  // a pilot begins with warm ones
     const double beyond = part > 0 || known || together == 0 ? 0
-                          : cold                             ? 1
+                          : gains_of_cold(i)                 ? 1
                                                              : gain_beyond(gain, what.name()),
                  high = known ? gain.high : std::min(gain.high + beyond, most(i)), value = std::min(gain.value, high),
                  low = gain.low - (gain.value - value);
     const double rate = rays_per_kilocycle(run_.result.rays_completed, static_cast<double>(run_.result.cycle->cycles));
     out_.gains[i] = {what.name(), what.part.action, what.sets, rate * (1 + value), value, low, high, together, part};
+    if (together == 1 && part <= 0) by_pilot_[i] = {value, low, high};
   }
 
   /// The gain of the machine with these classes relaxed, by the pilot with what this is known to be off by.
@@ -243,39 +250,49 @@ class Search {
     const auto any = [&](const auto& is) { return std::any_of(classes.begin(), classes.end(), is); };
     const bool slots = any([&](std::size_t i) { return more_slots(i); }),
                warms = any([&](std::size_t i) { return what_ifs_[i].part.how.keeps_shapes; });
-    // A pilot that was taken since it is like the run is less so in what was not compared.
-    const Estimate gain = foretelling(base_, slots)
-                              .gain({&*relaxed.cycle, relaxed.rays_completed}, std::max(kLike, likeness_.off()), warms);
+    const Estimate gain = foretelling(base_, slots).gain({&*relaxed.cycle, relaxed.rays_completed}, off(), warms);
     return slots && !out_.whole ? of_few_slots(gain) : gain;
   }
+  /// A pilot that was taken since it is like the run is less so in what was not compared.
+  double off() const { return std::max(kLike, likeness_.off()); }
 
-  /// Simulates the frame's beginning for classes that may be the best, if that may tell more, and returns true then.
+  /// Goes on with the frame for the class that may tell most of which to name, and returns true then.
   bool look_again() {
     if (stops_ || out_.whole) return false;  // no run of the machine as configured; or its frame is known
-    std::vector<std::size_t> worth = worth_a_second_look(out_.gains, kContenders);
-    if (larger_pilot(worth)) return true;
-    const double part = next_part(worth);
+    if (larger_pilot()) return true;
+    const std::optional<std::size_t> named = named_gain(out_.gains);
+    const bool won = named && out_.unlike.empty() && !may_be_beaten(out_.gains, *named),
+               by_little = named && out_.gains[*named].frame <= 0 &&
+                           (!out_.unlike.empty() || gains_of_cold(*named) || more_slots(*named));
+    if (won && !by_little && !told_roughly(out_.gains[*named])) return false;
+    const std::optional<std::size_t> next = won || by_little ? named : next_contender(out_.gains);
+    if (!next) return false;
+    const cycle::CycleResult& run = *run_.result.cycle;
+    const double known = out_.gains[*next].frame,
+                 part = next_part(run, known, fill(), part_within(known + kWithFrame - pilots_.taken()));
     if (part <= 0) return false;
-    const FrameBeginning beginning = beginning_of(*run_.result.cycle, part);
-    pilots_.begin(worth.size(), beginning);
-    const std::vector<RunResult> results = simulate_relaxed(worth);
+    const FrameBeginning beginning = beginning_of(run, part);
+    pilots_.begin_frame(beginning.rays - beginning_of(run, known).rays);
+    const cycle::CycleResult relaxed = pilots_.go_on(what_ifs_[*next].relaxed, beginning);
+    note_cost();
     if (!out_.complete) return false;
-    for (std::size_t k = 0; k < worth.size(); ++k)
-      note(worth[k],
-           part < 1
-               ? gain_by_beginning(*run_.result.cycle, *results[k].cycle, beginning, fill(more_slots(worth[k])),
-                                   what_ifs_[worth[k]].part.how.keeps_shapes)
-               : Foretelling({&*run_.result.cycle, frame()}, frame(), fill()).gain({&*results[k].cycle, frame()}, 0),
-           1, part);
+    Estimate gain = part < 1 ? gain_by_beginning(run, relaxed, beginning, fill(more_slots(*next)),
+                                                 what_ifs_[*next].part.how.keeps_shapes)
+                             : Foretelling({&run, frame()}, frame(), fill()).gain({&relaxed, frame()}, 0);
+    if (const auto pilot = by_pilot_.find(*next); part < 1 && pilot != by_pilot_.end())
+      gain = both(pilot->second, gain);
+    note(*next, gain, 1, part);
     return true;
   }
 
   /// Simulates a larger pilot for these classes if the frame's beginning would not tell of its rest within what a
   /// search is to take, and returns true then.
-  bool larger_pilot(std::vector<std::size_t> worth) {
+  bool larger_pilot() {
     const double left = kWanted - for_noise() - pilots_.taken();
+    std::vector<std::size_t> worth = worth_a_second_look(out_.gains, kContenders);
     const auto at_least = static_cast<double>(std::min(worth.size(), kFewest));
-    if (worth.empty() || left <= 0 || tells_of_the_rest(part_within(left / at_least))) return false;
+    if (worth.empty() || left <= 0 || any_frame(out_.gains) || tells_of_the_rest(part_within(left / at_least)))
+      return false;
     for (std::size_t n = worth.size(); n >= std::min(worth.size(), kFewest); --n) {
       const auto paths =
           static_cast<std::uint64_t>(left / static_cast<double>(n + 1) * static_cast<double>(run_.paths));
@@ -284,9 +301,14 @@ class Search {
       out_.paths = paths;
       pilots_.begin("larger pilot", n + 1, paths);
       simulate_base(n);
+      if (const auto slots = std::find_if(worth.begin(), worth.end(), [&](std::size_t i) { return more_slots(i); });
+          out_.complete && slots != worth.end() && !pilots_.drains()) {
+        look_at_slots(*slots);
+        worth.erase(slots);
+      }
       const std::vector<RunResult> results = simulate_relaxed(worth);
       if (!out_.complete) return false;
-      for (std::size_t k = 0; k < n; ++k) note(worth[k], gain_of({worth[k]}, results[k]), 1);
+      for (std::size_t k = 0; k < worth.size(); ++k) note(worth[k], gain_of({worth[k]}, results[k]), 1);
       return true;
     }
     return false;
@@ -300,35 +322,6 @@ class Search {
 
   bool tells_of_the_rest(double part) const { return tells_of_rest(*run_.result.cycle, part, fill()); }
   double part_within(double taken) const { return part_that_takes(*run_.result.cycle, frame(), taken); }
-
-  /// The part of the frame that is to be simulated for these classes, or for fewer of them; 0 if the budget has none
-  /// that tells more than is known. Beyond what a search is to take it is for two of them at most, if none is to be
-  /// named or another may be the best.
-  double next_part(std::vector<std::size_t>& worth) const {
-    constexpr double kMore = 1.5, kFills = 3;
-    const double fills = part_of(*run_.result.cycle, kFills * static_cast<double>(fill()));
-    const auto try_within = [&](double budget, std::size_t least, std::size_t most) {
-      for (std::size_t n = std::min(worth.size(), most); n >= least && n > 0; --n) {
-        const double part = part_within((budget - pilots_.taken()) / static_cast<double>(n));
-        if (part < std::max(kLeastPart, fills) || !tells_of_the_rest(part)) continue;
-        std::vector<std::size_t> some = worth;
-        std::erase_if(some, [&](std::size_t i) {
-          const double known = out_.gains[i].frame;
-          return known >= 1 || part < std::min(1.0, kMore * known);
-        });
-        if (some.size() < n) continue;
-        some.resize(n);
-        worth = std::move(some);
-        return part;
-      }
-      return 0.0;
-    };
-    if (const double part = try_within(kWanted - for_noise(), std::min(worth.size(), kFewest), kContenders); part > 0)
-      return part;
-    const std::optional<std::size_t> named = named_gain(out_.gains);
-    if (named && out_.unlike.empty() && !may_be_beaten(out_.gains, *named)) return 0;
-    return try_within(kWithFrame, 1, kFewest);
-  }
 
   /// Simulates a pilot with other seeds: its places in the picture are the same, and their rays are others. It is the
   /// first one, or twice as large if the budget has so much left.
@@ -349,7 +342,7 @@ class Search {
     std::vector<double> cycles;
     if (!larger) cycles.push_back(seeds_.cycles);
     for (const RunResult& result : simulate(which))
-      if (out_.complete) cycles.push_back(static_cast<double>(result.cycle->cycles));
+      if (out_.complete) cycles.push_back(pilots_.cycles(*result.cycle));
     if (!out_.complete) return;
     out_.noise = cycle_noise(cycles, paths >= run_.paths);
     out_.noise_paths = paths;
@@ -373,13 +366,14 @@ class Search {
   const accel::Accel& accel_;
   const SearchedRun& run_;
   SearchBudget budget_;
-  PilotRuns pilots_;
+  std::vector<WhatIf> what_ifs_;
+  PilotRuns pilots_;                          // of these
   bool stops_ = false, cold_ = false;         // a resource; caches of the run
   bool fixed_work_ = false;                   // of tests and shading
   std::uint64_t noise_seeds_ = 0, draw_ = 0;  // draw_: of the present pilot
   BasePilot seeds_;                           // the first pilot
-  std::vector<WhatIf> what_ifs_;
   std::map<std::size_t, RunResult> relaxed_;  // by index of what_ifs_
+  std::map<std::size_t, Estimate> by_pilot_;  // of those that were relaxed alone
   RunResult base_;
   Likeness likeness_;  // of the pilot; a run in which a resource stops is not compared
   Bottleneck out_;

@@ -62,13 +62,12 @@ struct Bottleneck {
 /// simulated for a small pilot: those that stand alone, and then, as far as they may gain what another one surely does,
 /// groups of those that the run kept busy for less than half of its time, or that others wait for. A group that may
 /// gain enough is divided, unless the pilot is not like the run and may not tell its gain from nothing. If it is sure
-/// then which class to name, the search ends. Else the frame's beginning is simulated for those that may be the best
-/// (frame_beginning.h), which the run itself is compared with: once within what a search is to take, and again, for two
-/// of them or one, if another than the class to be named may be the best, or if none is to be named. Where the
-/// rest would be unlike the beginning a larger pilot is simulated for them instead. A pilot that is not like the run
-/// tells of no class, unless one is worth naming in spite of the difference, which widens the
-/// intervals, or by the frame's beginning. No simulation begins beyond the budget (pilot_runs.h), and a frame that is
-/// too small for it is not searched. Where a resource stops there is no run to compare with, and the pilot is larger.
+/// then which class to name, the search ends. Else those that may be the best race over the frame (frame_race.h), which
+/// the run itself is compared with (frame_beginning.h). Where the rest would be unlike the beginning a larger pilot is
+/// simulated for them instead. A pilot that is not like the run tells of no class, unless one is worth naming in spite
+/// of the difference, which widens the intervals, or by the frame's beginning. No simulation begins beyond the budget
+/// (pilot_runs.h), and a frame that is too small for it is not searched. Where a resource stops there is no run to
+/// compare with, and the pilot is larger.
 ///
 /// The machine as configured is simulated with run.noise_seeds other seeds, for the noise of the run's cycles, by a
 /// pilot as large as the budget allows; not where a resource stops.

@@ -54,6 +54,23 @@ std::vector<double> differences(const std::vector<double>& base, const std::vect
 
 }  // namespace
 
+Estimate both(const Estimate& a, const Estimate& b) {
+  constexpr double kLeast = 0.05;
+  struct Time {
+    double value, above, below;
+    explicit Time(const Estimate& gain)
+        : value(of(gain.value)), above(of(gain.low) - value), below(value - of(gain.high)) {}
+    static double of(double gain) { return 1 / std::max(2 * kLeast, 1 + gain); }
+    double precision() const { return 1 / std::max(1e-9, (above + below) * (above + below)); }
+  };
+  const Time one(a), other(b);
+  const double share = one.precision() / (one.precision() + other.precision()),
+               time = share * one.value + (1 - share) * other.value;
+  const auto error = [&](double x, double y) { return std::hypot(share * x, (1 - share) * y); };
+  return {1 / time - 1, 1 / (time + error(one.above, other.above)) - 1,
+          1 / std::max(kLeast, time - error(one.below, other.below)) - 1};
+}
+
 Foretelling::Foretelling(PilotRun base, std::uint64_t frame_rays, std::uint64_t fill, const CycleResult* frame)
     : base_(base),
       frame_rays_(frame_rays),

@@ -31,6 +31,9 @@ struct Estimate {
   double value = 0, low = 0, high = 0;
 };
 
+/// What two estimates of the same gain say that are off by other things: in times, weighted by how narrow they are.
+Estimate both(const Estimate& a, const Estimate& b);
+
 class Foretelling {
  public:
   /// `frame_rays`: rays of the whole frame. `fill`: completed rays after which every machine that is compared is full.

@@ -135,7 +135,8 @@ double part_that_takes(const CycleResult& run, std::uint64_t rays, double taken)
 Estimate gain_by_beginning(const CycleResult& run, const CycleResult& relaxed, const FrameBeginning& beginning,
                            std::uint64_t fill, bool warms) {
   // Chosen so that 95 % and more of the gains of machines drawn by `script/verdicts --drawn` lie in their intervals.
-  constexpr double kSteps = 0.35, kTrend = 1.5, kUnknown = 0.5, kLittle = 0.01, kSeeds = 3.1, kLeast = 0.05;
+  constexpr double kSteps = 0.35, kTrend = 1.5, kUnknown = 0.5, kLittle = 0.01, kSeeds = 3.1, kLeast = 0.05,
+                   kUsual = 0.3, kPower = 0.3;
   const Blocks blocks(run, beginning, fill);
   std::vector<double> taken;  // of the relaxed machine's cycles for each of the run's
   double reached = 0;
@@ -161,8 +162,9 @@ Estimate gain_by_beginning(const CycleResult& run, const CycleResult& relaxed, c
                                            left * blocks.of_rest(taken, (1 + mean) / 2)),
                seeds = kSeeds * std::sqrt(steps * beginning.part / kProgressBlocks),
                trend = kTrend * std::sqrt(std::max(0.0, deviation - steps)),
-               error = std::hypot(std::hypot(left * kSteps * std::sqrt(steps), left * trend), left * kUnknown * unknown,
-                                  seeds) +
+               error = std::pow(kUsual / beginning.part, kPower) *
+                           std::hypot(std::hypot(left * kSteps * std::sqrt(steps), left * trend),
+                                      left * kUnknown * unknown, seeds) +
                        kLittle * left;
   return {1 / time - 1, 1 / (time + error) - 1, 1 / std::max(kLeast, time - error - still) - 1};
 }

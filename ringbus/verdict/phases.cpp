@@ -90,4 +90,22 @@ std::vector<FramePhase> frame_phases(const PilotRun& base, const std::vector<Pil
   return out;
 }
 
+std::vector<GainPhase> gain_phases(const RunResult& base, const std::vector<WhatIf>& what_ifs,
+                                   const std::map<std::size_t, RunResult>& relaxed) {
+  std::vector<std::size_t> classes;
+  std::vector<PilotRun> runs;
+  for (const auto& [i, run] : relaxed) {
+    classes.push_back(i);
+    runs.push_back({&*run.cycle, run.rays_completed});
+  }
+  std::vector<GainPhase> out;
+  for (const FramePhase& phase : frame_phases({&*base.cycle, base.rays_completed}, runs)) {
+    GainPhase& one = out.emplace_back(GainPhase{phase.begin, phase.end, phase.time, "", "", phase.gain});
+    if (phase.best == kNoClass) continue;
+    one.name = what_ifs[classes[phase.best]].name();
+    one.action = what_ifs[classes[phase.best]].part.action;
+  }
+  return out;
+}
+
 }  // namespace carousel::ringbus

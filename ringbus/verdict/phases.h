@@ -1,9 +1,13 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <vector>
 
+#include "ringbus/results/run_result.h"
+#include "ringbus/verdict/bottleneck_search.h"
 #include "ringbus/verdict/foretell.h"
+#include "ringbus/verdict/what_if.h"
 
 namespace carousel::ringbus {
 
@@ -24,5 +28,9 @@ inline constexpr std::size_t kNoClass = ~std::size_t{0};
 /// time that a block saves by chance, and at least 2 % of the run, so that noise makes no phases. One phase if nothing
 /// changes; none without a relaxed machine.
 std::vector<FramePhase> frame_phases(const PilotRun& base, const std::vector<PilotRun>& relaxed);
+
+/// As frame_phases(), with the classes' names. `relaxed`: by index of `what_ifs`.
+std::vector<GainPhase> gain_phases(const RunResult& base, const std::vector<WhatIf>& what_ifs,
+                                   const std::map<std::size_t, RunResult>& relaxed);
 
 }  // namespace carousel::ringbus

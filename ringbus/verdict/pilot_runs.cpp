@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <utility>
 
 #include "core/config/own_sections.h"
 #include "core/system/executor.h"
-#include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/verdict/progress_blocks.h"
 #include "ringbus/verdict/steady_state.h"
 
 namespace carousel::ringbus {
@@ -36,41 +37,85 @@ Config with_other_seed(const Config& machine, std::uint64_t k) {
 }
 
 void PilotRuns::begin(const char* stage, std::size_t machines, std::uint64_t paths) {
+  constexpr double kOften = 1.5;
   paths_ = paths;
-  beginning_ = {1, 0};
+  drains_ = paths >= run_.paths || static_cast<double>(paths) >= kOften * static_cast<double>(slots_);
+  rays_ = paths < run_.paths ? run_.result.rays_completed * paths / run_.paths : kAllRays;
   state_ = {stage, 0, machines, 0, run_.result.rays_completed * paths / std::max<std::uint64_t>(1, run_.paths)};
 }
 
-void PilotRuns::begin(std::size_t machines, const FrameBeginning& beginning) {
-  begin(beginning.part < 1 ? "the frame's beginning" : "whole frame", machines, run_.paths);
-  beginning_ = beginning;
-  if (beginning.part < 1) state_.rays = beginning.rays;
+void PilotRuns::begin_frame(std::uint64_t rays) {
+  begin("frame", 1, run_.paths);
+  state_.rays = rays;
 }
 
-RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
-  const std::unique_ptr<Workload> pilot = make_pilot_(machine, paths_, draw_);
-  RunOptions options = options_;
+void PilotRuns::prepare(Simulation& simulation, const Config& machine, std::size_t threads) {
+  simulation.workload = make_pilot_(machine, paths_, drains_ ? 0 : slots_, draw_);
+  RunOptions& options = simulation.options = options_;
   options.threads = threads;
-  if (beginning_.part < 1) options.enough = std::max<std::uint64_t>(1, beginning_.rays);
   // Each first miss of the frame's run would otherwise be one of the pilot, which has fewer rays to share it.
   options.warm = {&run_.result.cycle->recent_lines, 1 - static_cast<double>(paths_) / static_cast<double>(run_.paths),
                   run_.warm, &run_.result.cycle->buffered, &run_.result.cycle->own_recent};
-  std::uint64_t shown = 0;
-  options.progress = [&](std::uint64_t completed) {
+  options.progress = [this, &simulation](std::uint64_t completed) {
     const std::lock_guard lock(mutex_);
-    state_.under_way += completed - shown;
-    state_.completed += completed - shown;
-    shown = completed;
+    state_.under_way += completed - simulation.shown;
+    state_.completed += completed - simulation.shown;
+    simulation.shown = completed;
     if (observe_) observe_(state_);
   };
   options.progress(0);
-  RunResult result = run_cycle(machine, accel_, scene_size_, *pilot, options);
+  simulation.run = begin_cycle(machine, accel_, scene_size_, *simulation.workload, options);
+}
+
+RunResult PilotRuns::simulate(const Config& machine, std::size_t threads) {
+  Simulation simulation;
+  prepare(simulation, machine, threads);
+  const bool ended = simulation.run->run_until(drains_ ? kAllRays : rays_);
+  RunResult result = simulation.run->result();
   const std::lock_guard lock(mutex_);
-  complete_ &= result.complete || !options.stop.stop_requested();
+  complete_ &= ended || !options_.stop.stop_requested();
   simulated_rays_ += result.rays_completed;
-  state_.under_way -= shown;
+  state_.under_way -= simulation.shown;
   ++state_.done;
   return result;
+}
+
+cycle::CycleResult PilotRuns::go_on(const Config& machine, const FrameBeginning& beginning) {
+  Simulation& simulation = of_frame_[&machine];
+  if (simulation.run == nullptr) prepare(simulation, machine, std::max<std::size_t>(1, options_.threads));
+  const std::uint64_t before = simulation.shown;
+  const bool ended =
+      simulation.run->run_until(beginning.part < 1 ? std::max<std::uint64_t>(1, beginning.rays) : kAllRays);
+  complete_ &= ended || !options_.stop.stop_requested();
+  cycle::CycleResult out;
+  out.progress = simulation.run->progress();
+  std::uint64_t completed = out.progress.empty() ? 0 : out.progress.back().completed;
+  if (ended) {
+    RunResult all = simulation.run->result();
+    completed = all.rays_completed;
+    out = std::move(*all.cycle);
+    simulation.run.reset();
+    simulation.workload.reset();
+  }
+  const double taken =
+      std::max(beginning.part, static_cast<double>(completed) / static_cast<double>(run_.result.rays_completed));
+  simulation.options.progress(completed);
+  taken_ += taken - std::exchange(simulation.taken, taken);
+  simulated_rays_ += completed - before;
+  state_.under_way = 0;
+  ++state_.done;
+  return out;
+}
+
+std::vector<RunResult> PilotRuns::simulate_to_the_end(const std::vector<const Config*>& machines) {
+  const bool drained = std::exchange(drains_, true);
+  std::vector<RunResult> results = simulate(machines);
+  drains_ = drained;
+  return results;
+}
+
+double PilotRuns::cycles(const cycle::CycleResult& pilot) const {
+  return drains_ ? static_cast<double>(pilot.cycles) : at_count(pilot, rays_, cycle_of);
 }
 
 std::vector<RunResult> PilotRuns::simulate(const std::vector<const Config*>& machines) {
@@ -91,8 +136,7 @@ std::vector<RunResult> PilotRuns::simulate(const std::vector<const Config*>& mac
     }
   });
   for (const RunResult& result : results)
-    taken_ += std::max(beginning_.part < 1 ? beginning_.part : 0,
-                       static_cast<double>(result.rays_completed) / static_cast<double>(run_.result.rays_completed));
+    taken_ += static_cast<double>(result.rays_completed) / static_cast<double>(run_.result.rays_completed);
   return results;
 }
 

@@ -4,6 +4,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -12,6 +14,7 @@
 #include "accel/structure/accel.h"
 #include "core/config/config.h"
 #include "core/types/workload.h"
+#include "ringbus/cycle/cycle_engine.h"
 #include "ringbus/results/run_result.h"
 #include "ringbus/verdict/frame_beginning.h"
 #include "ringbus/verdict/small_frame.h"
@@ -91,7 +94,9 @@ struct BasePilot {
 
 /// Makes the workload of `paths` of the frame's paths, drawn over all of it, or of all of them; the same ones for each
 /// machine, and others for another `draw`.
-using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths, std::uint64_t draw)>;
+/// `more`: further paths that begin after those.
+using PilotFactory = std::function<std::unique_ptr<Workload>(const Config&, std::uint64_t paths, std::uint64_t more,
+                                                             std::uint64_t draw)>;
 
 /// How far a search has come.
 struct SearchProgress {
@@ -107,19 +112,24 @@ using SearchObserver = std::function<void(const SearchProgress&)>;
 /// Simulates parts of a frame, its pilots, on machines of several configurations. Keeps references to its arguments.
 class PilotRuns {
  public:
+  /// `slots`: of the machine as configured.
   PilotRuns(const accel::Accel& accel, float scene_size, const PilotFactory& make_pilot, const SearchedRun& run,
-            const RunOptions& options, const SearchObserver& observe)
+            std::uint64_t slots, const RunOptions& options, const SearchObserver& observe)
       : accel_(accel),
         scene_size_(scene_size),
         make_pilot_(make_pilot),
         run_(run),
+        slots_(slots),
         options_(options),
         observe_(observe) {}
 
   /// A pilot of so many paths, which this number of machines will get.
   void begin(const char* stage, std::size_t machines, std::uint64_t paths);
-  /// The frame's beginning, which this number of machines will get.
-  void begin(std::size_t machines, const FrameBeginning& beginning);
+  /// The frame itself, of which one machine will get so many rays more.
+  void begin_frame(std::uint64_t rays);
+  /// A pilot is simulated to its end. One that then is hardly between fill and drain goes on with further paths, and
+  /// ends when as many rays are completed as its own paths stand for.
+  bool drains() const { return drains_; }
   /// Pilots are of this draw from now on.
   void take(std::uint64_t draw) { draw_ = draw; }
   void expect_more(std::size_t machines) { state_.of += machines; }
@@ -129,6 +139,14 @@ class PilotRuns {
   /// the other on all threads. The results are in the order of the machines, and undefined once complete() is false.
   /// Throws as run_cycle.
   std::vector<RunResult> simulate(const std::vector<const Config*>& machines);
+  /// As simulate(), but the pilot alone, to its end.
+  std::vector<RunResult> simulate_to_the_end(const std::vector<const Config*>& machines);
+  /// The cycles that a machine took for the rays that the pilot's paths stand for.
+  double cycles(const cycle::CycleResult& pilot) const;
+  /// After begin_frame(): simulates the frame from its start on this machine, or goes on from where it had stopped,
+  /// until it has completed the rays of the beginning, or all. Returns its progress and, at the end, its cycles.
+  /// `machine` must outlive this object. Undefined once complete() is false. Throws as run_cycle.
+  cycle::CycleResult go_on(const Config& machine, const FrameBeginning& beginning);
 
   /// False if a simulation was interrupted; no further one is begun.
   bool complete() const { return complete_; }
@@ -138,19 +156,30 @@ class PilotRuns {
   double taken() const { return taken_; }
 
  private:
+  /// A simulation, and what it works on.
+  struct Simulation {
+    std::unique_ptr<Workload> workload;
+    RunOptions options;
+    std::uint64_t shown = 0;  // completed rays that the observer knows of
+    double taken = 0;         // part of the run
+    std::unique_ptr<CycleSimulation> run;
+  };
+  void prepare(Simulation& simulation, const Config& machine, std::size_t threads);
   RunResult simulate(const Config& machine, std::size_t threads);
 
   const accel::Accel& accel_;
   float scene_size_;
   const PilotFactory& make_pilot_;
   const SearchedRun& run_;
+  std::uint64_t slots_;
   const RunOptions& options_;
   const SearchObserver& observe_;
-  std::uint64_t paths_ = 0, draw_ = 0;
-  std::mutex mutex_;  // guards the members below, and the observer
+  static constexpr std::uint64_t kAllRays = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t paths_ = 0, rays_ = kAllRays, draw_ = 0;  // rays_: that the paths stand for
+  std::mutex mutex_;                                      // guards the members below, and the observer
   SearchProgress state_;
-  bool complete_ = true;
-  FrameBeginning beginning_{1, 0};
+  bool complete_ = true, drains_ = true;
+  std::map<const Config*, Simulation> of_frame_;
   std::uint64_t simulated_rays_ = 0;
   double taken_ = 0;
 };

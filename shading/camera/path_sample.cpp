@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 
 namespace carousel::shading {
 
@@ -93,6 +94,23 @@ PathSample draw_list(std::uint64_t all, std::uint64_t paths, std::uint64_t seed,
     runs.push_back({piece * kListRun, std::min(kListRun, all - piece * kListRun), static_cast<std::uint32_t>(part)});
     next = piece + 1;
   }
+  return PathSample(runs);
+}
+
+PathSample followed_by(const PathSample& sample, const PathSample& others, std::uint64_t paths) {
+  std::vector<PathSample::Run> runs = sample.runs();
+  std::set<std::uint64_t> taken;
+  for (const PathSample::Run& run : runs) taken.insert(run.first);
+  std::vector<PathSample::Run> last;
+  std::uint64_t count = 0;
+  for (auto run = others.runs().rbegin(); run != others.runs().rend() && count < paths; ++run)
+    if (taken.count(run->first) == 0) {
+      last.push_back(*run);
+      count += run->count;
+    }
+  const std::uint32_t places = runs.empty() ? 0 : runs.back().place + 1;
+  for (auto run = last.rbegin(); run != last.rend(); ++run)
+    runs.push_back({run->first, run->count, places + run->place});
   return PathSample(runs);
 }
 

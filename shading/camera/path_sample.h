@@ -44,6 +44,10 @@ inline constexpr std::uint64_t kListRun = 64;
 /// About `paths` elements of a list of `all`, drawn likewise: runs of kListRun, one of each of equal parts.
 PathSample draw_list(std::uint64_t all, std::uint64_t paths, std::uint64_t seed, std::uint64_t draw = 0);
 
+/// A sample and after it the last places of another one of the same frame, with so many paths or somewhat more, that
+/// are not among its own.
+PathSample followed_by(const PathSample& sample, const PathSample& others, std::uint64_t paths);
+
 /// A process's share of a frame of `all` paths among `parts` processes: runs of neighbours in turn, so that each has
 /// some of every part of the picture.
 PathSample share_of_paths(std::uint64_t all, std::uint64_t part, std::uint64_t parts);

@@ -121,6 +121,20 @@ constexpr const char* kBusyWorker =
     "shape_buffer_kib: 4}\n"
     "shading: {workers: 1, cycles_per_shade: 60}\n";
 
+constexpr const char* kOneContext =
+    "engine: {kind: cycle}\n"
+    "image: {width: 80, height: 56, samples: 2, max_depth: 2}\n"
+    "scene: {builtin: cornell}\n"
+    "topology: {resources: 4, shape: ring, visit: owners, link: {latency_cycles: 4, bytes_per_cycle: 64, depth: 8}}\n"
+    "packets: {ids_per_cycle: 32}\n"
+    "collections: {traversal: treelet}\n"
+    "bvh: {treelet_triangles: 64}\n"
+    "rays: {slots_per_resource: 32}\n"
+    "testers: {box: {units: 16}, triangle: {units: 4, interval_cycles: 16}, contexts: 1}\n"
+    "memory: {l2_latency_cycles: 100, dram_latency_cycles: 400, l2_kib: 64, shape_buffer_kib: 4, dram: {preset: "
+    "gddr6_14, channels: 4}}\n"
+    "shading: {workers: 4, cycles_per_shade: 60}\n";
+
 // A pilot whose buffers were empty would spend its time on filling them, and more room would gain 3 % of 366.
 TEST_F(VerdictPilots, MoreRoomForShapesGainsWhatTheFrameGains) {
   const Json report = searched(kNarrowBuffers), bottleneck = report["bottleneck"];
@@ -191,6 +205,21 @@ TEST_F(VerdictPilots, OwnCachesBeginWithWhatTheRunsHeld) {
   EXPECT_EQ(bottleneck["unlike"], "");
   EXPECT_EQ(bottleneck["limits"], "memory_bandwidth") << bottleneck.dump(1);
   EXPECT_EQ(report["bound"]["classes"][0]["name"], "memory_bandwidth");
+}
+
+// The pilot leaves two classes that may be the best. The frame is simulated for them on several threads at once, in
+// parts, and says the same as on one.
+TEST_F(VerdictPilots, TheFrameIsSimulatedFurtherForWhatMayBeTheBestOnAnyThreads) {
+  const Json report = searched(kOneContext), found = report["bottleneck"];
+  EXPECT_EQ(found["limits"], "contexts") << found.dump(1);
+  int raced = 0;
+  for (const Json& gain : found["gains"]) raced += gain.value("frame", 0.0) > 0 && gain.value("frame", 0.0) < 1;
+  EXPECT_GE(raced, 2) << found.dump(1);
+  expect_real(report, found["gains"][0]);
+  for (const char* threads : {"1", "3"}) {
+    const std::string sets = std::string("engine.threads=") + threads;
+    EXPECT_EQ(run_report(program_, kOneContext, {"engine.what_if=true", sets})["bottleneck"], found) << threads;
+  }
 }
 
 }  // namespace

@@ -38,6 +38,19 @@ double whole_gain(std::uint64_t rays, double fill, const Each& before, double fi
   return a / b - 1;
 }
 
+// Times of 1 / 2 and 1 / 1.6 of the base's, with errors of 0.05 and 0.1 each: the first counts four times as much.
+TEST(Foretell, TwoEstimatesCountByHowNarrowTheyAre) {
+  const auto estimate = [](double time, double error) {
+    return Estimate{1 / time - 1, 1 / (time + error) - 1, 1 / (time - error) - 1};
+  };
+  const Estimate narrow = estimate(0.5, 0.05), wide = estimate(0.625, 0.1), gain = both(narrow, wide);
+  const double time = 0.8 * 0.5 + 0.2 * 0.625, error = std::hypot(0.8 * 0.05, 0.2 * 0.1);
+  EXPECT_NEAR(gain.value, 1 / time - 1, 1e-12);
+  EXPECT_NEAR(gain.low, 1 / (time + error) - 1, 1e-12);
+  EXPECT_NEAR(gain.high, 1 / (time - error) - 1, 1e-12);
+  EXPECT_LT(error, 0.05) << "two know more than one";
+}
+
 TEST(Foretell, FillAndDrainCountOnce) {
   const auto ten = [](std::uint64_t) { return 10.0; };
   const CycleResult pilot = machine(4000, 20000, ten, 9000, 100);

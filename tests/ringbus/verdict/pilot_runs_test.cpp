@@ -14,7 +14,9 @@
 #include <gtest/gtest.h>
 
 #include "ringbus/cycle/cycle_engine.h"
+#include "ringbus/verdict/frame_race.h"
 #include "ringbus/verdict/pilot_likeness.h"
+#include "ringbus/verdict/progress_blocks.h"
 #include "ringbus/verdict/search_choices.h"
 #include "tests/ringbus/support/test_machine.h"
 
@@ -45,7 +47,8 @@ struct PilotCase {
   std::vector<RunResult> simulate(std::size_t threads, const PilotFactory& pilots, const SearchObserver& observe) {
     const SearchedRun searched{run, kPilotRays};
     const RunOptions options = on_threads(threads);
-    PilotRuns runs(scene.accel(machines[0].bvh), scene.size(), pilots, searched, options, observe);
+    PilotRuns runs(scene.accel(machines[0].bvh), scene.size(), pilots, searched, slots_of(machines[0]), options,
+                   observe);
     runs.begin("pilot", machines.size(), kPilotRays);
     return runs.simulate(wanted);
   }
@@ -53,7 +56,9 @@ struct PilotCase {
 
 TEST(PilotRuns, AreTheSameOnThreads) {
   PilotCase pilot;
-  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t, std::uint64_t) {
+    return pilot.scene.new_workload();
+  };
   const std::vector<RunResult> alone = pilot.simulate(1, pilots, {});
   SearchProgress last;  // no lock: the observer is called by one thread at a time
   const std::vector<RunResult> together = pilot.simulate(3, pilots, [&](const SearchProgress& at) { last = at; });
@@ -75,36 +80,81 @@ TEST(PilotRuns, OfAWarmFrameAreAsWarm) {
   ScatterWorkload workload = pilot.scene.workload();
   const RunResult second = run_cycle(pilot.machines[0], accel, pilot.scene.size(), workload, options);
   ASSERT_LT(second.cycle->cycles, pilot.run.cycle->cycles) << "the caches do not matter";
-  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t, std::uint64_t) {
+    return pilot.scene.new_workload();
+  };
   const SearchedRun searched{second, kPilotRays, &pilot.run.cycle->cached_lines};
   const RunOptions plain = on_threads(1);
   const SearchObserver nobody;
-  PilotRuns runs(accel, pilot.scene.size(), pilots, searched, plain, nobody);
+  PilotRuns runs(accel, pilot.scene.size(), pilots, searched, slots_of(pilot.machines[0]), plain, nobody);
   runs.begin("pilot", 1, kPilotRays);
   EXPECT_EQ(runs.simulate({pilot.wanted.front()}).front().cycle->cycles, second.cycle->cycles);
 }
 
-// A simulation of the frame's beginning ends there, and goes as that of the frame does until then.
-TEST(PilotRuns, OfTheFramesBeginningEndThere) {
+// The frame goes on from where it had stopped, as if it had not stopped, and only what is new counts as taken.
+TEST(PilotRuns, TheFrameGoesOn) {
   PilotCase pilot;
-  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t, std::uint64_t) {
+    return pilot.scene.new_workload();
+  };
   const SearchedRun searched{pilot.run, kPilotRays};
+  const cycle::CycleResult& run = *pilot.run.cycle;
+  const SearchObserver nobody;
+  for (const std::size_t threads : {1, 2}) {
+    const RunOptions options = on_threads(threads);
+    PilotRuns runs(pilot.scene.accel(pilot.machines[0].bvh), pilot.scene.size(), pilots, searched,
+                   slots_of(pilot.machines[0]), options, nobody);
+    const FrameBeginning third = beginning_of(run, 0.3), most = beginning_of(run, 0.7);
+    const auto taken = [&](double part, std::uint64_t rays) {
+      return std::max(part, static_cast<double>(rays) / static_cast<double>(pilot.run.rays_completed));
+    };
+    runs.begin_frame(third.rays);
+    const cycle::CycleResult part = runs.go_on(pilot.machines[0], third);
+    EXPECT_TRUE(runs.complete()) << "nobody has interrupted it";
+    EXPECT_GE(part.progress.back().completed, third.rays);
+    EXPECT_LT(part.progress.back().completed, most.rays);
+    EXPECT_NEAR(gain_by_beginning(run, part, third, 0).value, 0, 0.1);
+    EXPECT_NEAR(runs.taken(), taken(0.3, part.progress.back().completed), 1e-12);
+    runs.begin_frame(most.rays - third.rays);
+    const cycle::CycleResult further = runs.go_on(pilot.machines[0], most);
+    EXPECT_NEAR(runs.taken(), taken(0.7, further.progress.back().completed), 1e-12);
+    for (const cycle::ProgressSample& sample : part.progress)
+      EXPECT_EQ(at_count(further, sample.completed, cycle_of), static_cast<double>(sample.at));
+    EXPECT_EQ(runs.go_on(pilot.machines[0], {1, pilot.run.rays_completed}).cycles, run.cycles);
+    EXPECT_NEAR(runs.taken(), 1, 1e-12);
+    EXPECT_EQ(runs.simulated_rays(), pilot.run.rays_completed);
+  }
+}
+
+// A pilot with fewer paths than one and a half times the ray slots has as many further ones, and ends before these.
+TEST(PilotRuns, ASmallPilotEndsWhileTheMachineIsFull) {
+  PilotCase pilot;
+  std::vector<std::uint64_t> further;
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t more, std::uint64_t) {
+    further.push_back(more);
+    return pilot.scene.new_workload();
+  };
+  const SearchedRun searched{pilot.run, 4 * kPilotRays};
   const RunOptions options = on_threads(1);
   const SearchObserver nobody;
-  PilotRuns runs(pilot.scene.accel(pilot.machines[0].bvh), pilot.scene.size(), pilots, searched, options, nobody);
-  const FrameBeginning third = beginning_of(*pilot.run.cycle, 0.3);
-  runs.begin(1, third);
-  const RunResult part = runs.simulate({pilot.wanted.front()}).front();
+  const std::uint64_t slots = slots_of(pilot.machines[0]), few = slots, many = 2 * slots;
+  PilotRuns runs(pilot.scene.accel(pilot.machines[0].bvh), pilot.scene.size(), pilots, searched, slots, options,
+                 nobody);
+  runs.begin("pilot", 1, many);
+  EXPECT_TRUE(runs.drains());
+  EXPECT_EQ(runs.simulate({&pilot.machines[0]}).front().rays_completed, pilot.run.rays_completed);
+  runs.begin("pilot", 1, few);
+  EXPECT_FALSE(runs.drains());
+  const RunResult part = runs.simulate({&pilot.machines[0]}).front();
+  const std::uint64_t stands_for = pilot.run.rays_completed * few / (4 * kPilotRays);
+  EXPECT_GE(part.rays_completed, stands_for);
+  EXPECT_LT(part.rays_completed, pilot.run.rays_completed);
+  EXPECT_FALSE(part.cycle->all_begun) << "it was full";
+  EXPECT_LE(runs.cycles(*part.cycle), static_cast<double>(part.cycle->cycles));
+  EXPECT_EQ(runs.simulate_to_the_end({&pilot.machines[0]}).front().rays_completed, pilot.run.rays_completed);
+  EXPECT_FALSE(runs.drains());
+  EXPECT_EQ(further, (std::vector<std::uint64_t>{0, slots, 0}));
   EXPECT_TRUE(runs.complete()) << "nobody has interrupted it";
-  EXPECT_GE(part.rays_completed, third.rays);
-  EXPECT_NEAR(static_cast<double>(part.cycle->cycles), 0.3 * static_cast<double>(pilot.run.cycle->cycles),
-              0.05 * static_cast<double>(pilot.run.cycle->cycles));
-  EXPECT_NEAR(gain_by_beginning(*pilot.run.cycle, *part.cycle, third, 0).value, 0, 0.1);
-  EXPECT_NEAR(runs.taken(),
-              std::max(0.3, static_cast<double>(part.rays_completed) / static_cast<double>(pilot.run.rays_completed)),
-              1e-12);
-  runs.begin("pilot", 1, kPilotRays);
-  EXPECT_EQ(runs.simulate({pilot.wanted.front()}).front().rays_completed, pilot.run.rays_completed);
 }
 
 std::uint64_t misses(const RunResult& run) {
@@ -173,10 +223,12 @@ TEST(PilotRuns, BeginWithTheLinesOfTheRunsOwnCaches) {
   EXPECT_GT(half, own_misses(cold) / 4);
   EXPECT_LT(half, own_misses(cold) * 3 / 4);
   const SearchedRun searched{cold, 8 * kPilotRays};
-  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) { return pilot.scene.new_workload(); };
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t, std::uint64_t) {
+    return pilot.scene.new_workload();
+  };
   const RunOptions plain = on_threads(1);
   const SearchObserver nobody;
-  PilotRuns runs(accel, pilot.scene.size(), pilots, searched, plain, nobody);
+  PilotRuns runs(accel, pilot.scene.size(), pilots, searched, slots_of(pilot.machines[0]), plain, nobody);
   runs.begin("pilot", 1, kPilotRays);
   EXPECT_LT(own_misses(runs.simulate({&config}).front()), own_misses(cold) / 4);
 }
@@ -217,7 +269,7 @@ TEST(PilotRuns, ALargerCacheBeginsWithLinesThatTheRunsReplaced) {
 TEST(PilotRuns, HandOnAnError) {
   PilotCase pilot;
   std::atomic<int> begun{0};
-  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t) {
+  const PilotFactory pilots = [&](const Config&, std::uint64_t, std::uint64_t, std::uint64_t) {
     if (++begun == 2) throw std::runtime_error("no such pilot");
     return pilot.scene.new_workload();
   };
@@ -302,6 +354,20 @@ TEST(LedgerBound, FollowsFromTheWorkOfOthers) {
   EXPECT_FALSE(work_is_fixed(config, plain)) << "rays that are tested together";
 }
 
+// The memory is busy for 800 of 1,000 cycles. Half of its lines are read for the first time, which takes 400 of them,
+// with any caches.
+TEST(LedgerBound, FollowsFromFirstReads) {
+  cycle::CycleResult run = run_of(0, 900, 900);
+  run.uses.push_back({"memory_bandwidth", 1, 800});
+  run.memory.lines = 1000;
+  run.first_reads = 500;
+  EXPECT_NEAR(most_gain(run, "memory_latency", false), 1 / 0.4 - 1 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run, "contexts", false), 1 / 0.4 - 1 + 0.03, 1e-12);
+  EXPECT_NEAR(most_gain(run, "memory_bandwidth", false), 1 + 0.03, 1e-12) << "which reads them faster";
+  run.first_reads = 0;
+  EXPECT_GT(most_gain(run, "contexts", false), 100);
+}
+
 // A part that differs by 15 points or less is borne with; of two such, or of one that differs by more, those count that
 // matter.
 TEST(PilotLikeness, OnlyAPartThatMattersVetoesAnAnswer) {
@@ -343,13 +409,51 @@ Gain relaxed_alone(double value, double low, double high) {
   return gain;
 }
 
-TEST(SearchChoices, AClassMayBeBeatenByWhatMayGainMoreThanATie) {
-  std::vector<Gain> gains{relaxed_alone(0.4, 0.3, 0.5), relaxed_alone(0.3, -0.1, 0.42), relaxed_alone(0.2, 0.1, 0.42)};
+// A rival reaches its upper end seldom: seven tenths of the way to it, and 3 points for a tie, are looked at.
+TEST(FrameRace, AClassMayBeBeatenByWhatMayGainMoreThanATie) {
+  std::vector<Gain> gains{relaxed_alone(0.4, 0.3, 0.5), relaxed_alone(0.3, -0.1, 0.42), relaxed_alone(0.3, 0.1, 0.48)};
   EXPECT_FALSE(may_be_beaten(gains, 0));
-  gains[2].high = 0.44;
+  gains[2].high = 0.49;
   EXPECT_TRUE(may_be_beaten(gains, 0));
   gains[2].together = 2;
-  EXPECT_FALSE(may_be_beaten(gains, 0)) << "it has no gain of its own";
+  EXPECT_FALSE(may_be_beaten(gains, 0)) << "several gain less together";
+  gains[2].gain = 0.44;
+  EXPECT_TRUE(may_be_beaten(gains, 0)) << "one of several may gain as much";
+  gains[2].together = 0;
+  EXPECT_FALSE(may_be_beaten(gains, 0)) << "nobody has simulated it";
+}
+
+// The frame is simulated for the class to be named and its first rival: where less of it is known, and else for the
+// wider interval. What is known of the whole frame needs nothing more.
+TEST(FrameRace, GoesOnWhereLessIsKnown) {
+  std::vector<Gain> gains{relaxed_alone(0.4, 0.3, 0.5), relaxed_alone(0.35, 0.1, 0.6), relaxed_alone(0.1, 0, 0.45)};
+  EXPECT_EQ(next_contender(gains), 1u) << "its interval is wider";
+  gains[1].frame = 0.16;
+  EXPECT_EQ(next_contender(gains), 0u);
+  gains[0].frame = 0.32;
+  EXPECT_EQ(next_contender(gains), 1u);
+  gains[1].frame = 1;
+  EXPECT_EQ(next_contender(gains), 2u) << "the next rival";
+  gains[2].high = 0.2;
+  EXPECT_FALSE(next_contender(gains)) << "none may be named instead";
+  gains[0].frame = 1;
+  EXPECT_FALSE(next_contender(gains));
+  gains = {relaxed_alone(0.4, -0.3, 1.1), relaxed_alone(0.1, -0.1, 0.3)};
+  EXPECT_EQ(next_contender(gains), 0u) << "none is to be named yet";
+}
+
+TEST(FrameRace, DoublesThePartOfTheFrame) {
+  cycle::CycleResult run;
+  run.cycles = 10'000;
+  for (std::uint64_t ray = 1; ray <= 1000; ++ray) run.progress.push_back({10 * ray, ray, {5 * ray}});
+  run.uses = {{"shading", 1, 5000}};
+  EXPECT_EQ(next_part(run, 0, 10, 1), 0.16);
+  EXPECT_NEAR(next_part(run, 0, 100, 1), 0.3, 1e-12) << "three times what fills the machine";
+  EXPECT_EQ(next_part(run, 0.16, 10, 1), 0.32);
+  EXPECT_EQ(next_part(run, 0.64, 10, 1), 1);
+  EXPECT_EQ(next_part(run, 0.2, 10, 0.35), 0.35) << "what is left";
+  EXPECT_EQ(next_part(run, 0.2, 10, 0.29), 0) << "hardly more than is known";
+  EXPECT_EQ(next_part(run, 0, 10, 0.15), 0);
 }
 
 // The greatest of uncertain gains is likely to be overestimated: 40 % (30 to 50 %) is more than 42 % (10 to 74 %).
@@ -359,7 +463,7 @@ TEST(SearchChoices, TheNamedClassIsLikelyToGainMost) {
 }
 
 // A pilot that tells nothing of a class may leave it most to gain.
-TEST(SearchChoices, TheMiddleOfTheIntervalSaysWhatIsLookedAtFirst) {
+TEST(FrameRace, TheMiddleOfTheIntervalSaysWhatIsLookedAtFirst) {
   const std::vector<Gain> gains{relaxed_alone(0.2, 0.1, 0.3), relaxed_alone(-0.4, -0.5, 1),
                                 relaxed_alone(0.02, 0, 0.02)};
   EXPECT_EQ(worth_a_second_look(gains, 6), (std::vector<std::size_t>{1, 0}));

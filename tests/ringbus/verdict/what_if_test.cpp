@@ -68,8 +68,8 @@ class FirstPaths final : public Workload {
 
 Bottleneck search(TestScene& scene, const Config& config, std::uint64_t paths, const RunResult& run,
                   std::size_t threads = 1) {
-  const PilotFactory pilots = [&](const Config&, std::uint64_t some, std::uint64_t) {
-    return std::make_unique<FirstPaths>(scene.new_workload(), some);
+  const PilotFactory pilots = [&](const Config&, std::uint64_t some, std::uint64_t more, std::uint64_t) {
+    return std::make_unique<FirstPaths>(scene.new_workload(), some + more);
   };
   return find_bottleneck(config, scene.accel(config.bvh), scene.size(), pilots, {run, paths}, on_threads(threads));
 }

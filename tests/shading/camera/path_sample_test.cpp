@@ -131,6 +131,21 @@ TEST(PathSample, PlacesAreNeighboursWithAllTheirSamples) {
   EXPECT_EQ(bands.size(), 3u) << "all over the picture";
 }
 
+// The further paths are others, of the lower end of the picture, and keep the order of the frame.
+TEST(PathSample, IsFollowedByOtherPathsOfTheEnd) {
+  const PixelOrder order(320, 240, 1);
+  const PathSample own = draw_tiles(order, 4096, 512, 1, 0), others = draw_tiles(order, 4096, 512, 1, 1),
+                   all = followed_by(own, others, 1000);
+  const std::vector<std::uint64_t> first = ordinals(own), chosen = ordinals(all);
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), chosen.begin()));
+  EXPECT_GE(all.count(), own.count() + 1000);
+  EXPECT_LT(all.count(), own.count() + 1000 + 512);
+  EXPECT_EQ(std::set(chosen.begin(), chosen.end()).size(), chosen.size());
+  for (std::uint64_t i = own.count(); i < all.count(); ++i) EXPECT_GT(order.at(all.ordinal(i)).y, 120u);
+  for (std::size_t i = 1; i < all.runs().size(); ++i) EXPECT_GE(all.runs()[i].place, all.runs()[i - 1].place);
+  EXPECT_EQ(followed_by(own, own, 1000).count(), own.count()) << "its own paths begin once";
+}
+
 TEST(PathSample, OfAListIsDrawnOverAllOfIt) {
   const PathSample sample = draw_list(10000, 1024, 5);
   EXPECT_NEAR(static_cast<double>(sample.count()), 1024, 64);
