@@ -28,7 +28,7 @@ class CycleSimulation {
   virtual bool run_until(std::uint64_t completed) = 0;
   /// So far; the last sample is that of the end of the last part.
   virtual const std::vector<cycle::ProgressSample>& progress() const = 0;
-  /// What the run has come to. Once, and nothing goes on after it.
+  /// The result so far. It may be asked for once, and the run cannot go on after it.
   virtual RunResult result() = 0;
 };
 

@@ -212,6 +212,7 @@ class Search {
   /// A machine with more ray slots has more rays under way when another is done with the pilot's, and those of it that
   /// were completed are the short ones. So both simulate the pilot to its end.
   void look_at_slots(std::size_t i) {
+    pilots_.expect_more(1);
     std::vector<RunResult> results = pilots_.simulate_to_the_end({&config_, &what_ifs_[i].relaxed});
     note_cost();
     if (!out_.complete) return;
@@ -317,7 +318,7 @@ class Search {
   /// True if there is nothing to add: it is sure which class to name, and nothing speaks against it.
   bool told() { return judge() && sure(out_.gains); }
 
-  /// What the runs for the noise are to take.
+  /// The part of the run that simulations for the noise are to take.
   double for_noise() const { return budget_.of(seeds_.paths, static_cast<std::size_t>(noise_seeds_)); }
 
   bool tells_of_the_rest(double part) const { return tells_of_rest(*run_.result.cycle, part, fill()); }

@@ -31,7 +31,8 @@ struct Estimate {
   double value = 0, low = 0, high = 0;
 };
 
-/// What two estimates of the same gain say that are off by other things: in times, weighted by how narrow they are.
+/// Two estimates of the same gain in one, if their errors are independent. Times of the relaxed machine are averaged,
+/// and the narrower estimate counts more.
 Estimate both(const Estimate& a, const Estimate& b);
 
 class Foretelling {
