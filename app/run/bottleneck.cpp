@@ -228,19 +228,17 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   report::Bottleneck judged = report::judge_gains(std::move(out));
   const ringbus::MemoryReads reads = ringbus::reads_between(*run.cycle, slots);
   if (!ringbus::gains_of_cold_caches(judged.limits) || reads.first_share() < ringbus::kColdShare) return judged;
-  judged.cold_caches = report::ColdCaches{judged.limits, reads.reads, reads.first};
+  judged.cold_caches = report::ColdCaches{reads.reads, reads.first};
   const auto memory = std::find_if(judged.gains.begin(), judged.gains.end(),
                                    [&](const report::BottleneckGain& gain) { return gain.name == judged.limits; });
   std::vector<ringbus::WarmGain> others;
   for (const report::BottleneckGain& gain : judged.gains) {
-    if (ringbus::gains_of_cold_caches(gain.name) || gain.together > 1 || gain.low <= 0) continue;
+    if (ringbus::gains_of_cold_caches(gain.name) || gain.together != 1 || !worth_naming(gain.gain, gain.low)) continue;
     others.push_back({gain.gain, gain.low});
-    if (judged.cold_caches->instead.empty() && gain.together == 1 && worth_naming(gain.gain, gain.low) &&
-        gain.high >= memory->gain)
-      judged.cold_caches->instead = gain.name;
+    if (judged.cold_caches->when_warm.empty()) judged.cold_caches->when_warm = gain.name;
   }
   if (ringbus::best_when_warm({memory->gain, memory->low}, reads.first_share(), others))
-    judged.cold_caches->instead = memory->name;
+    judged.cold_caches->when_warm = memory->name;
   return report::judge_gains(std::move(judged));
 }
 

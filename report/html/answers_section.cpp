@@ -41,7 +41,9 @@ Html limits_card(const Json& report) {
   Html out;
   if (const Json* gain = limiting_gain(report)) {
     const std::string group = text_at(report, "bottleneck.group"), name = words(text_at(*gain, "name"));
-    out += markup("<p class=\"verdict\">{}</p>\n", capital(group.empty() ? name : fmt::format("{} ({})", group, name)));
+    out +=
+        markup("<p class=\"verdict\">{}</p>\n", capital((number_at(*gain, "low") > 0 ? "" : "probably ") +
+                                                        (group.empty() ? name : fmt::format("{} ({})", group, name))));
     const Json* rivals = find(report, "bottleneck.rivals");
     constexpr std::size_t kShown = 3;
     std::string names;
@@ -49,6 +51,7 @@ Html limits_card(const Json& report) {
       names += (i == 0 ? "" : ", ") + words((*rivals)[i].get<std::string>());
     if (rivals && rivals->size() > kShown) names += fmt::format(" and {} more", rivals->size() - kShown);
     if (!names.empty()) out += markup("<p>As much may be gained with: {}.</p>\n", names);
+    if (const std::string cold = cold_sentence(report); !cold.empty()) out += markup("<p>{}</p>\n", cold);
   } else {
     out += markup("<p class=\"verdict small\">{}</p>\n", singular(verdict_sentence(report)));
   }

@@ -9,6 +9,17 @@
 
 namespace carousel::report::html {
 
+std::string cold_sentence(const Json& report) {
+  const Json* cold = find(report, "bottleneck.cold_caches");
+  if (!cold) return "";
+  const std::string limits = text_at(report, "bottleneck.limits"), warm = text_at(*cold, "when_warm");
+  return fmt::format(
+      "{} of the lines that memory reads are read for the first time, so this gains less in a larger "
+      "picture{}.",
+      percent(number_at(*cold, "first") / std::max(1.0, number_at(*cold, "reads"))),
+      warm == limits ? "" : fmt::format(", where {} may gain most", warm.empty() ? "another class" : words(warm)));
+}
+
 std::string verdict_sentence(const Json& report) {
   const Json* bottleneck = find(report, "bottleneck");
   const std::string limits = bottleneck ? text_at(*bottleneck, "limits") : "";
@@ -17,7 +28,7 @@ std::string verdict_sentence(const Json& report) {
       if (text_at(gain, "name") != limits) continue;
       const double low = number_at(gain, "low"), high = number_at(gain, "high");
       const std::string group = text_at(*bottleneck, "group");
-      std::string out = fmt::format("this machine is limited by {}: {} gains {:+.1f} %",
+      std::string out = fmt::format("this machine is {}limited by {}: {} gains {:+.1f} %", low > 0 ? "" : "probably ",
                                     group.empty() ? words(limits) : fmt::format("{} ({})", group, words(limits)),
                                     text_at(gain, "action"), 100 * number_at(gain, "gain"));
       out += fmt::format(" (95 % of confidence, other seeds of the picture included: {:+.1f} % to {:+.1f} %)",
@@ -29,7 +40,8 @@ std::string verdict_sentence(const Json& report) {
           out += (i == 0 ? " " : ", ") + words(rivals[i].get<std::string>());
         if (rivals.size() > kShown) out += fmt::format(" and {} more", rivals.size() - kShown);
       }
-      return capital(out) + ".";
+      const std::string cold = cold_sentence(report);
+      return capital(out) + "." + (cold.empty() ? "" : " " + cold);
     }
   }
   if (bottleneck) return capital(sentence_words(text_at(*bottleneck, "verdict"))) + ".";

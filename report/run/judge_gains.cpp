@@ -14,16 +14,13 @@ namespace carousel::report {
 
 namespace {
 
-const BottleneckGain& named_cold(const Bottleneck& b) {
-  return *std::find_if(b.gains.begin(), b.gains.end(),
-                       [&](const BottleneckGain& gain) { return gain.name == b.cold_caches->named; });
-}
-
 std::string cold_text(const Bottleneck& b) {
   if (!b.cold_caches) return "";
+  const std::string& warm = b.cold_caches->when_warm;
   return fmt::format(
-      "; {:.0f} % of the lines that memory reads are read for the first time, and {} gains less in a larger picture",
-      100 * ratio(b.cold_caches->first, b.cold_caches->reads), b.cold_caches->named);
+      "; {:.0f} % of the lines that memory reads are read for the first time, and {} gains less in a larger picture{}",
+      100 * ratio(b.cold_caches->first, b.cold_caches->reads), b.limits,
+      warm == b.limits ? "" : fmt::format(", where {} may gain most", warm.empty() ? "another class" : warm));
 }
 
 std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
@@ -40,12 +37,6 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
         grouped(small->paths), grouped(small->slots), 100 * small->between, grouped(small->least_paths));
   if (!b.unlike.empty()) return "not found out: the pilot is not like the run: " + b.unlike;
   if (b.gains.empty()) return "not found out: nothing can be relaxed";
-  if (const auto& cold = b.cold_caches; cold && named == nullptr)
-    return fmt::format(
-        "not found out: {} gains {}, but {:.0f} % of the lines that memory reads between fill and drain are read for "
-        "the "
-        "first time; in a larger picture, with warmer caches, another class may gain most",
-        cold->named, gain_text(named_cold(b)), 100 * ratio(cold->first, cold->reads));
   if (named == nullptr) {
     const BottleneckGain& best = b.gains.front();
     const std::string others = best.together > 1 ? fmt::format(" with {} others", best.together - 1) : "";
@@ -54,7 +45,8 @@ std::string verdict(const Bottleneck& b, const BottleneckGain* named) {
                        noise && best.gain > kWorthIt ? "can be told to limit it" : "limits it alone", best.action,
                        others, gain_text(best), noise ? ", which may be noise" : "");
   }
-  std::string text = fmt::format("{}: {} gains {}", named->name, named->action, gain_text(*named));
+  std::string text = fmt::format("{}{}: {} gains {}", named->low > 0 ? "" : "probably ", named->name, named->action,
+                                 gain_text(*named));
   if (!b.rivals.empty()) {
     constexpr std::size_t kShown = 3;
     std::size_t shown = 0;
@@ -94,12 +86,6 @@ Bottleneck judge_gains(Bottleneck found) {
     if (gain.together == 1 && worth_naming(gain.gain, gain.low) &&
         (named == nullptr || likely_gain(gain.gain, gain.low) > likely_gain(named->gain, named->low)))
       named = &gain;
-  if (found.cold_caches) {
-    const auto instead = std::find_if(found.gains.begin(), found.gains.end(), [&](const BottleneckGain& gain) {
-      return gain.name == found.cold_caches->instead;
-    });
-    named = instead == found.gains.end() ? nullptr : &*instead;
-  }
   found.limits = named == nullptr ? "" : named->name;
   found.rivals.clear();
   for (const BottleneckGain& gain : found.gains)

@@ -7,8 +7,8 @@
 namespace carousel::report {
 
 /// Names the class of parts that limits the machine from the gains, which stand greatest first: fills in `limits`,
-/// `rivals`, `group` and `verdict`. With `cold_caches`, whose class stands among the gains, the one instead is named,
-/// if any. A gain that is not worth_naming names nothing, nor does that of classes that were relaxed together.
+/// `rivals`, `group` and `verdict`. A gain that is not worth_naming names nothing, nor does that of classes that were
+/// relaxed together. `cold_caches` are those of the class that is named.
 Bottleneck judge_gains(Bottleneck found);
 
 /// "+12.3 % (+10.1 to +14.5 %)", or without an interval if it is exact.

@@ -71,7 +71,7 @@ template <class V>
 void describe(V& v, const UntriedClass& r) {
   v.field("name", r.name, "", "class of parts");
   v.field("action", r.action, "", "change that would relax the class");
-  v.field("why", r.why, "", "what `carousel check` says of such a configuration");
+  v.field("why", r.why, "", "what `carousel check` says of such a configuration, or that other classes took the rays");
 }
 
 /// A frame that is too small beside the ray slots of its machine for a verdict.
@@ -96,23 +96,19 @@ void describe(V& v, const FrameTooSmall& r) {
   v.field("busy", r.busy, "fraction", "part of the time in which its parts were busy, in the mean");
 }
 
-/// Reads of memory of which so many are the first of their lines that the named class may gain only while caches are
-/// cold.
+/// Reads of memory of which so many are the first of their lines that `limits` may gain only while caches are cold.
 struct ColdCaches {
-  std::string named;
   std::uint64_t reads = 0, first = 0;
-  std::string instead{};
+  std::string when_warm{};
 };
 
 template <class V>
 void describe(V& v, const ColdCaches& r) {
-  v.field("named", r.named, "", "class of parts that would be named");
   v.field("reads", r.reads, "lines", "lines read from memory between fill and drain");
   v.field("first", r.first, "lines", "those that had not been read before: a larger frame has hardly more of them");
-  v.field("instead", r.instead, "",
-          "class that is named all the same: one that is not of the way to memory and may gain as much, or `named` "
-          "where it "
-          "would gain most without first reads; empty if none is");
+  v.field("when_warm", r.when_warm, "",
+          "class that may gain most in a larger frame, which reads hardly more lines for the first time: `limits`, or "
+          "one that is not of the way to memory; empty if none is known");
 }
 
 /// A stretch of the pilot in which one class of parts gains most.
@@ -150,9 +146,9 @@ struct Bottleneck {
 template <class V>
 void describe(V& v, const Bottleneck& r) {
   v.field("complete", r.complete, "", "false if the search was interrupted; nothing is then found out");
-  v.field(
-      "limits", r.limits, "",
-      "class that gains most when relaxed; empty when none surely gains, or none gains 5 %, or nothing is found out");
+  v.field("limits", r.limits, "",
+          "class that gains most in this frame when relaxed, for certain if its interval lies above 0; empty when none "
+          "probably gains, or none gains 5 %, or nothing is found out");
   v.field("rivals", r.rivals, "", "further classes that may gain as much, as their intervals overlap");
   v.field("group", r.group, "", "what these classes and `limits` have in common; empty if nothing, or none is a rival");
   v.field("verdict", r.verdict, "", "the same in words");
@@ -169,10 +165,12 @@ void describe(V& v, const Bottleneck& r) {
             "the frame mostly fills and drains the machine, so that nothing is found out; absent otherwise");
   v.section(
       "cold_caches", r.cold_caches,
-      "the memory gains most, and a quarter or more of its reads fetch what nobody had asked for, so that it is not "
-      "named; absent otherwise");
+      "the memory gains most, and a quarter or more of its reads fetch what nobody had asked for, so that it gains "
+      "less in a larger frame; absent otherwise");
   v.section("gains", r.gains, "gain of each class, greatest first");
-  v.section("untried", r.untried, "classes that no configuration may relax so, of which no gain is told");
+  v.section(
+      "untried", r.untried,
+      "classes of which no gain is told: no configuration may relax them so, or the search had no rays left for them");
   v.section(
       "phases", r.phases,
       "stretches in which different classes limit the machine, in the order of time; one if it is always the same");

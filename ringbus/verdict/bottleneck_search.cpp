@@ -54,6 +54,7 @@ class Search {
     }
     pilots_.begin("pilot", first, out_.paths);
     screen(groups);
+    if (out_.complete) try_seldom();
     if (out_.complete) out_.phases = gain_phases(base_, what_ifs_, relaxed_);
     seeds_ = {out_.paths, draw_, base_.cycle ? pilots_.cycles(*base_.cycle) : 0};
     while (out_.complete && !told() && look_again()) continue;
@@ -63,6 +64,8 @@ class Search {
       out_.gains.clear();
       out_.phases.clear();
     }
+    for (const Untried& one : out_.untried)
+      std::erase_if(out_.gains, [&](const Gain& gain) { return gain.name == one.name; });
     std::stable_sort(out_.gains.begin(), out_.gains.end(), [](auto& a, auto& b) { return a.gain > b.gain; });
     return out_;
   }
@@ -209,6 +212,24 @@ class Search {
     }
   }
 
+  /// Simulates the classes that seldom gain, if they may gain enough, as far as the budget of the screening allows.
+  void try_seldom() {
+    for (std::size_t i = 0; i < what_ifs_.size(); ++i) {
+      if (!seldom_gains(what_ifs_[i]) || out_.gains[i].high < std::max(kWorthIt, surely(out_.gains))) continue;
+      if (!affords(1, kScreened)) {
+        note(i, {}, 0);
+        out_.untried.push_back({what_ifs_[i].name(), what_ifs_[i].part.action,
+                                "it seldom gains, and other classes took the rays of the search"});
+        continue;
+      }
+      pilots_.expect_more(1);
+      std::vector<RunResult> results = simulate_relaxed({i});
+      if (!out_.complete) return;
+      note(i, gain_of({i}, results.front()), 1);
+      relaxed_[i] = std::move(results.front());
+    }
+  }
+
   /// A machine with more ray slots has more rays under way when another is done with the pilot's, and those of it that
   /// were completed are the short ones. So both simulate the pilot to its end.
   void look_at_slots(std::size_t i) {
@@ -231,8 +252,8 @@ class Search {
   /// Pilots begin with warm caches, and tell nothing of this class then.
   bool gains_of_cold(std::size_t i) const { return cold_ && gains_of_cold_caches(what_ifs_[i].name()); }
 
-  /// Notes what a class gains that was relaxed with others, or with none, or was not simulated (0), for a pilot or for
-  /// a part of the frame from its start. It lies within what the run allows, or higher where a pilot tells nothing.
+  /// Notes what a class gains that was relaxed with others, or not simulated (0), by a pilot or a part of the frame
+  /// from its start: within what the run allows, or more where a pilot tells nothing.
   void note(std::size_t i, const Estimate& gain, std::size_t together, double part = 0) {
     const WhatIf& what = what_ifs_[i];
     const bool known = part >= 1 || (together == 1 && out_.whole);
@@ -261,12 +282,8 @@ class Search {
   bool look_again() {
     if (stops_ || out_.whole) return false;  // no run of the machine as configured; or its frame is known
     if (larger_pilot()) return true;
-    const std::optional<std::size_t> named = named_gain(out_.gains);
-    const bool won = named && out_.unlike.empty() && !may_be_beaten(out_.gains, *named),
-               by_little = named && out_.gains[*named].frame <= 0 &&
-                           (!out_.unlike.empty() || gains_of_cold(*named) || more_slots(*named));
-    if (won && !by_little && !told_roughly(out_.gains[*named])) return false;
-    const std::optional<std::size_t> next = won || by_little ? named : next_contender(out_.gains);
+    const std::optional<std::size_t> next =
+        next_look(out_.gains, out_.unlike.empty(), [this](std::size_t i) { return gains_of_cold(i) || more_slots(i); });
     if (!next) return false;
     const cycle::CycleResult& run = *run_.result.cycle;
     const double known = out_.gains[*next].frame,
@@ -292,7 +309,8 @@ class Search {
     const double left = kWanted - for_noise() - pilots_.taken();
     std::vector<std::size_t> worth = worth_a_second_look(out_.gains, kContenders);
     const auto at_least = static_cast<double>(std::min(worth.size(), kFewest));
-    if (worth.empty() || left <= 0 || any_frame(out_.gains) || tells_of_the_rest(part_within(left / at_least)))
+    if (worth.empty() || left <= 0 || any_frame(out_.gains) ||
+        tells_of_rest(*run_.result.cycle, part_within(left / at_least), fill()))
       return false;
     for (std::size_t n = worth.size(); n >= std::min(worth.size(), kFewest); --n) {
       const auto paths =
@@ -319,31 +337,18 @@ class Search {
   bool told() { return judge() && sure(out_.gains); }
 
   /// The part of the run that simulations for the noise are to take.
-  double for_noise() const { return budget_.of(seeds_.paths, static_cast<std::size_t>(noise_seeds_)); }
-
-  bool tells_of_the_rest(double part) const { return tells_of_rest(*run_.result.cycle, part, fill()); }
+  double for_noise() const { return budget_.of(seeds_.paths, noise_seeds_); }
   double part_within(double taken) const { return part_that_takes(*run_.result.cycle, frame(), taken); }
 
-  /// Simulates a pilot with other seeds: its places in the picture are the same, and their rays are others. It is the
-  /// first one, or twice as large if the budget has so much left.
+  /// Simulates a pilot with other seeds: the first one, or one twice as large if the budget has so much left.
   void find_noise() {
     if (noise_seeds_ == 0) return;
-    const auto seeds = static_cast<std::size_t>(noise_seeds_);
     const std::uint64_t twice = 2 * seeds_.paths;
-    const bool larger = twice <= run_.paths && pilots_.taken() + budget_.of(twice, seeds + 1) <= kWithNoise;
+    const bool larger = twice <= run_.paths && pilots_.taken() + budget_.of(twice, noise_seeds_ + 1) <= kWithNoise;
     const std::uint64_t paths = larger ? twice : seeds_.paths;
-    if (pilots_.taken() + budget_.of(paths, seeds) > kWithFrame) return;
-    pilots_.begin("other seeds", seeds + (larger ? 1 : 0), paths);
-    pilots_.take(seeds_.draw);
-    std::deque<Config> machines;
-    std::vector<const Config*> which;
-    if (larger) which.push_back(&config_);
-    for (std::uint64_t k = 1; k <= noise_seeds_; ++k)
-      which.push_back(&machines.emplace_back(with_other_seed(config_, k)));
-    std::vector<double> cycles;
-    if (!larger) cycles.push_back(seeds_.cycles);
-    for (const RunResult& result : simulate(which))
-      if (out_.complete) cycles.push_back(pilots_.cycles(*result.cycle));
+    if (pilots_.taken() + budget_.of(paths, noise_seeds_) > kWithFrame) return;
+    const std::vector<double> cycles = cycles_of_seeds(pilots_, config_, noise_seeds_, seeds_, paths);
+    note_cost();
     if (!out_.complete) return;
     out_.noise = cycle_noise(cycles, paths >= run_.paths);
     out_.noise_paths = paths;

@@ -24,7 +24,7 @@ bool best_when_warm(const WarmGain& memory, double first_share, const std::vecto
     return saved / (warm - saved);
   };
   const double gain = of_memory(memory.gain);
-  if (!worth_naming(gain, of_memory(memory.low))) return false;
+  if (gain < kWorthIt || of_memory(memory.low) <= 0) return false;
   return std::all_of(others.begin(), others.end(), [&](const WarmGain& other) {
     const double saved = other.gain / (1 + other.gain);
     return saved < warm && saved / (warm - saved) <= gain;

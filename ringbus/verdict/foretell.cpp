@@ -15,7 +15,7 @@ namespace {
 constexpr double kInOneClass = 0.75;
 
 /// Standard errors on both sides that hold 95 %, where some ten of 15 differences count as independent (Student's t).
-constexpr double kErrorsEachSide = 2.2;
+constexpr double kErrorsEachSide = 2.4;
 
 using cycle::CycleResult;
 using cycle::ProgressSample;

@@ -136,7 +136,7 @@ Estimate gain_by_beginning(const CycleResult& run, const CycleResult& relaxed, c
                            std::uint64_t fill, bool warms) {
   // Chosen so that 95 % and more of the gains of machines drawn by `script/verdicts --drawn` lie in their intervals.
   constexpr double kSteps = 0.35, kTrend = 1.5, kUnknown = 0.5, kLittle = 0.01, kSeeds = 3.1, kLeast = 0.05,
-                   kUsual = 0.3, kPower = 0.3;
+                   kUsual = 0.3, kPower = 0.3, kDrift = 0.05;
   const Blocks blocks(run, beginning, fill);
   std::vector<double> taken;  // of the relaxed machine's cycles for each of the run's
   double reached = 0;
@@ -164,7 +164,7 @@ Estimate gain_by_beginning(const CycleResult& run, const CycleResult& relaxed, c
                trend = kTrend * std::sqrt(std::max(0.0, deviation - steps)),
                error = std::pow(kUsual / beginning.part, kPower) *
                            std::hypot(std::hypot(left * kSteps * std::sqrt(steps), left * trend),
-                                      left * kUnknown * unknown, seeds) +
+                                      left * std::hypot(kUnknown * unknown, kDrift), seeds) +
                        kLittle * left;
   return {1 / time - 1, 1 / (time + error) - 1, 1 / std::max(kLeast, time - error - still) - 1};
 }

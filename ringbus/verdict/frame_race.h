@@ -17,10 +17,10 @@ namespace carousel::ringbus {
 // until no other may well gain more than the one to be named. Classes are given by index.
 
 /// True if a class may well gain more than this, by more than settles a tie. The upper end of 95 % of the gains is more
-/// than may well be: of the 300 machines that the search was tuned on as many are right with this part of the way to
+/// than may well be: of the 300 machines that the search was tuned on as many are right with two thirds of the way to
 /// it, for a tenth less of simulations. One class of a group may gain what the group does, but no more.
 inline bool may_well_gain(const Gain& one, double than) {
-  constexpr double kWell = 0.7;
+  constexpr double kWell = 0.64;
   const double more = one.together == 1 ? kWell * (one.high - one.gain) : 0;
   return one.together > 0 && one.gain + more > than + kEnough;
 }
@@ -67,11 +67,25 @@ inline bool may_be_beaten(const std::vector<Gain>& gains, std::size_t named) {
                      [&](const Gain& one) { return &one != &gains[named] && may_well_gain(one, gains[named].gain); });
 }
 
-/// True if a gain is told so roughly that it is worth to know more of it although nothing may beat it: within 100
+/// True if a gain is told so roughly that it is worth to know more of it although nothing may beat it: within 65
 /// points.
 inline bool told_roughly(const Gain& one) {
-  constexpr double kRough = 1;
+  constexpr double kRough = 0.65;
   return one.high - one.low > kRough && one.frame < 1;
+}
+
+/// The class for which the frame is simulated next: that to be named, if only a pilot tells of it that is not `alike`
+/// the run or tells too little of it, which `unsure` says, or if nothing may well beat it and it is told roughly or may
+/// gain nothing; and else one of two contenders. Absent if nothing is left to find out.
+template <class Unsure>
+std::optional<std::size_t> next_look(const std::vector<Gain>& gains, bool alike, const Unsure& unsure) {
+  const std::optional<std::size_t> named = named_gain(gains);
+  if (!named) return next_contender(gains);
+  const Gain& one = gains[*named];
+  const bool won = alike && !may_be_beaten(gains, *named), gains_some = one.low > 0,
+             by_little = one.frame <= 0 && (!alike || unsure(*named));
+  if (won && !by_little && !told_roughly(one) && (gains_some || one.frame > 0)) return std::nullopt;
+  return won || (by_little && gains_some) ? named : next_contender(gains);
 }
 
 /// The part of the frame that is simulated next for a class of which `known` is known: at first a sixth of it, or three

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <deque>
 #include <utility>
 
 #include "core/config/own_sections.h"
@@ -138,6 +139,22 @@ std::vector<RunResult> PilotRuns::simulate(const std::vector<const Config*>& mac
   for (const RunResult& result : results)
     taken_ += static_cast<double>(result.rays_completed) / static_cast<double>(run_.result.rays_completed);
   return results;
+}
+
+std::vector<double> cycles_of_seeds(PilotRuns& pilots, const Config& machine, std::uint64_t seeds,
+                                    const BasePilot& first, std::uint64_t paths) {
+  const bool again = paths != first.paths;
+  pilots.begin("other seeds", seeds + (again ? 1 : 0), paths);
+  pilots.take(first.draw);
+  std::deque<Config> others;
+  std::vector<const Config*> machines;
+  if (again) machines.push_back(&machine);
+  for (std::uint64_t k = 1; k <= seeds; ++k) machines.push_back(&others.emplace_back(with_other_seed(machine, k)));
+  std::vector<double> cycles;
+  if (!again) cycles.push_back(first.cycles);
+  for (const RunResult& result : pilots.simulate(machines))
+    if (pilots.complete()) cycles.push_back(pilots.cycles(*result.cycle));
+  return cycles;
 }
 
 }  // namespace carousel::ringbus

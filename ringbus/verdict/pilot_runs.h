@@ -42,11 +42,11 @@ std::uint64_t pilot_paths(const Config& config, std::uint64_t paths, std::uint64
 // These bound what a search simulates, as parts of the run's rays, or of its cycles where it simulates the frame's
 // beginning. A pilot's ray takes about as long as one of the run. A pilot's paths stand for as many rays as the run's;
 // where they have more, the search takes more.
-inline constexpr double kScreening = 0.4;  ///< that the first pilot is to take
-inline constexpr double kScreened = 0.6;   ///< beyond which no group is divided that gains less than a class alone
-inline constexpr double kWithNoise = 0.7;  ///< that all are to take, where a larger pilot tells the noise
-inline constexpr double kWanted = 0.85;    ///< that all are to take
-inline constexpr double kAtMost = 1.2;     ///< that the first pilot takes at most, and beyond which no group is divided
+inline constexpr double kScreening = 0.33;  ///< that the first pilot is to take
+inline constexpr double kScreened = 0.6;    ///< beyond which no group is divided that gains less than a class alone
+inline constexpr double kWithNoise = 0.7;   ///< that all are to take, where a larger pilot tells the noise
+inline constexpr double kWanted = 0.85;     ///< that all are to take
+inline constexpr double kAtMost = 1.2;  ///< that the first pilot takes at most, and beyond which no group is divided
 inline constexpr double kWithFrame = 1.75;  ///< that all take at most
 
 struct SearchBudget {
@@ -183,5 +183,11 @@ class PilotRuns {
   std::uint64_t simulated_rays_ = 0;
   double taken_ = 0;
 };
+
+/// The cycles that a pilot of `paths` takes with the seed of `first` and with `seeds` others: its places in the picture
+/// are the same, and their rays are others. Those of `first` are not simulated again. Undefined once
+/// pilots.complete() is false. Throws as run_cycle.
+std::vector<double> cycles_of_seeds(PilotRuns& pilots, const Config& machine, std::uint64_t seeds,
+                                    const BasePilot& first, std::uint64_t paths);
 
 }  // namespace carousel::ringbus

@@ -18,10 +18,10 @@ struct WhatIf {
 
   const std::string& name() const { return part.part; }
 };
-/// A class that the machine has and that no configuration may relax so.
+/// A class that the machine has and of which no gain is told.
 struct Untried {
   std::string name, action;
-  std::string why;  ///< what reading such a configuration says
+  std::string why;  ///< what reading such a configuration says, if none may relax it so; or that no rays were left
 };
 /// The what-ifs of the classes that the configured machine with such a scene has, in the order of the configuration's
 /// keys, whose rows say how they are relaxed. Classes that cannot be relaxed so are left out, and added to `untried`:

@@ -28,7 +28,7 @@ TEST(JudgeGains, NamesTheGreatestGainWithItsInterval) {
 }
 
 TEST(JudgeGains, NamesNothingInsideTheNoise) {
-  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.07, -0.01, 0.15), gain("boxes", 0.01, -0.03, 0.05)}});
+  const Bottleneck b = judge_gains({.gains = {gain("shading", 0.07, -0.16, 0.3), gain("boxes", 0.01, -0.03, 0.05)}});
   EXPECT_THAT(b.limits, IsEmpty());
   EXPECT_THAT(b.verdict, HasSubstr("no class of parts can be told to limit it"));
   EXPECT_THAT(b.verdict, HasSubstr("which may be noise"));
@@ -134,20 +134,19 @@ TEST(JudgeGains, SaysThatASearchWouldTakeTooLong) {
       "some 3,200 paths on, or with fewer slots, it can be said; shading was the busiest part, 90 % of the time");
 }
 
-TEST(JudgeGains, OfColdCachesItNamesAClassThatMayGainAsMuch) {
-  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 460, "boxes"},
+TEST(JudgeGains, OfColdCachesItSaysWhatMayGainMostWhenTheyAreWarm) {
+  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{1000, 460, "boxes"},
                                     .gains = {gain("memory", 0.48, 0.45, 0.51), gain("boxes", 0.4, 0.3, 0.5)}});
-  EXPECT_EQ(b.limits, "boxes");
-  EXPECT_THAT(b.rivals, ElementsAre("memory"));
-  EXPECT_EQ(
-      b.verdict,
-      "boxes: twice boxes gains +40.0 % (+30.0 to +50.0 %); not to be told apart from it: memory with +48.0 % "
-      "(+45.0 to +51.0 %); 46 % of the lines that memory reads are read for the first time, and memory gains less "
-      "in a larger picture");
+  EXPECT_EQ(b.limits, "memory");
+  EXPECT_THAT(b.rivals, ElementsAre("boxes"));
+  EXPECT_EQ(b.verdict,
+            "memory: twice memory gains +48.0 % (+45.0 to +51.0 %); not to be told apart from it: boxes with +40.0 % "
+            "(+30.0 to +50.0 %); 46 % of the lines that memory reads are read for the first time, and memory gains "
+            "less in a larger picture, where boxes may gain most");
 }
 
 TEST(JudgeGains, NamesMemoryThatWouldGainMostWithoutFirstReads) {
-  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 260, "memory"},
+  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{1000, 260, "memory"},
                                     .gains = {gain("memory", 0.48, 0.45, 0.51), gain("boxes", 0.1, 0.05, 0.15)}});
   EXPECT_EQ(b.limits, "memory");
   EXPECT_EQ(b.verdict,
@@ -155,16 +154,20 @@ TEST(JudgeGains, NamesMemoryThatWouldGainMostWithoutFirstReads) {
             "of the lines that memory reads are read for the first time, and memory gains less in a larger picture");
 }
 
-TEST(JudgeGains, NamesNothingOfColdCaches) {
-  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{"memory", 1000, 460},
-                                    .gains = {gain("boxes", 0.5, -0.1, 0.9), gain("memory", 0.48, 0.45, 0.51)}});
-  EXPECT_THAT(b.limits, IsEmpty());
-  EXPECT_THAT(b.rivals, IsEmpty());
-  EXPECT_EQ(
-      b.verdict,
-      "not found out: memory gains +48.0 % (+45.0 to +51.0 %), but 46 % of the lines that memory reads between fill "
-      "and drain are read for the first time; in a larger picture, with warmer caches, another class may gain "
-      "most");
+TEST(JudgeGains, OfColdCachesNobodyMayKnowWhatGainsMostWhenTheyAreWarm) {
+  const Bottleneck b = judge_gains({.cold_caches = ColdCaches{1000, 460}, .gains = {gain("memory", 0.48, 0.45, 0.51)}});
+  EXPECT_EQ(b.limits, "memory");
+  EXPECT_EQ(b.verdict,
+            "memory: twice memory gains +48.0 % (+45.0 to +51.0 %); 46 % of the lines that memory reads are read for "
+            "the first time, and memory gains less in a larger picture, where another class may gain most");
+}
+
+// What is likely to gain is worth a name although chance may have made its gain; of what is not, nothing is said.
+TEST(JudgeGains, SaysThatAClassProbablyLimits) {
+  const Bottleneck b = judge_gains({.gains = {gain("boxes", 0.18, -0.06, 0.42)}});
+  EXPECT_EQ(b.limits, "boxes");
+  EXPECT_EQ(b.verdict, "probably boxes: twice boxes gains +18.0 % (-6.0 to +42.0 %)");
+  EXPECT_THAT(judge_gains({.gains = {gain("boxes", 0.04, 0.02, 0.06)}}).limits, IsEmpty());
 }
 
 TEST(JudgeGains, SaysThatThePilotIsNotLikeTheRun) {

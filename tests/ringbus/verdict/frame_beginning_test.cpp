@@ -1,6 +1,7 @@
 // The gain that the beginning of a frame foretells, on runs whose whole gain is known in closed form.
 #include "ringbus/verdict/frame_beginning.h"
 
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -42,7 +43,8 @@ TEST(FrameBeginning, IsThatOfTheRunsTime) {
   EXPECT_NEAR(part_of(run, 150), 0.625, 1e-12);
 }
 
-// All rays take half the time: 100 %, whichever part is known.
+// All rays take half the time: 100 %, whichever part is known. The rest may be off by 5 points of time, more for a
+// short beginning, though all blocks are alike.
 TEST(FrameBeginning, AnEvenGainIsThatOfTheFrame) {
   const cycle::CycleResult run = run_of({{1000, 20, 0.5}}), relaxed = run_of({{1000, 10, 0.5}});
   for (const double part : {0.2, 0.5}) {
@@ -50,7 +52,8 @@ TEST(FrameBeginning, AnEvenGainIsThatOfTheFrame) {
     EXPECT_NEAR(gain.value, 1, 0.06) << part;
     EXPECT_LT(gain.low, 1);
     EXPECT_GT(gain.high, 1);
-    EXPECT_LT(width(gain), 0.25);
+    const double off = 1 / (1 + gain.low) - 1 / (1 + gain.value);
+    EXPECT_NEAR(off, (1 - part) * (0.05 * std::pow(0.3 / part, 0.3) + 0.01), 0.01) << part;
   }
 }
 
@@ -109,7 +112,7 @@ TEST(FrameBeginning, ATrendWidensTheInterval) {
   const cycle::CycleResult run = run_of({{3200, 60, 0.5}}), trend = run_of(growing), level = run_of({{1600, 45, 0.5}});
   const FrameBeginning half = beginning_of(run, 0.5);
   const Estimate now = gain_by_beginning(run, trend, half, 0), still = gain_by_beginning(run, trend, half, 0, true);
-  EXPECT_GT(width(now), 4 * width(gain_by_beginning(run, level, half, 0)));
+  EXPECT_GT(width(now), 3.5 * width(gain_by_beginning(run, level, half, 0)));
   EXPECT_GT(still.high, now.high + 0.1) << "room for shapes may go on filling";
   EXPECT_EQ(still.low, now.low);
 }
