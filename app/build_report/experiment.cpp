@@ -108,6 +108,11 @@ void share_signal(ringbus::Transport& ranks) {
 void write_trace(TraceFile& trace, const ringbus::RunResult& result) {
   const TraceFile::Written written =
       trace.write(*result.timeline, result.series ? &*result.series : nullptr, result.complete);
+  if (written.left > 1)
+    spdlog::warn(
+        "{} has one of about {} packets, and no tracks of units, since all would be more than the events of "
+        "--trace-events; --trace-window shows all of a part",
+        trace.name(), report::grouped(written.left));
   if (written.cut)
     spdlog::warn(
         "{} has {} events and ends after {} of the time; --trace-sample {}, --trace-window or --trace-events chooses",

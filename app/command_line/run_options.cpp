@@ -42,10 +42,10 @@ void add_run(CLI::App& program, RunArguments& r) {
          "With --trace: only events that begin between these cycles, or seconds of a native run (default: all)")
       ->needs(trace)
       ->type_name("A:B");
-  run->add_option("--trace-sample", r.trace.every, "With --trace: only every N-th packet of each resource")
+  run->add_option("--trace-sample", r.trace.every,
+                  "With --trace: only every N-th packet of each resource (default: as many as the most events allow)")
       ->needs(trace)
-      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}))
-      ->capture_default_str();
+      ->check(CLI::Range(std::uint64_t{1}, std::uint64_t{1'000'000'000}));
   run->add_option("--trace-events", r.trace.events, "With --trace: most events")
       ->needs(trace)
       ->check(CLI::Range(std::size_t{1'000}, std::size_t{100'000'000}))

@@ -225,9 +225,11 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
                          gain.together, gain.frame});
   for (const ringbus::GainPhase& phase : found.phases)
     out.phases.push_back({phase.begin, phase.end, phase.time, phase.name, phase.action, phase.gain});
-  report::Bottleneck judged = report::judge_gains(std::move(out));
   const ringbus::MemoryReads reads = ringbus::reads_between(*run.cycle, slots);
-  if (!ringbus::gains_of_cold_caches(judged.limits) || reads.first_share() < ringbus::kColdShare) return judged;
+  const bool cold = reads.first_share() >= ringbus::kColdShare;
+  const auto fades = [&](const std::string& part) { return cold && ringbus::gains_of_cold_caches(part); };
+  report::Bottleneck judged = report::judge_gains(std::move(out), fades);
+  if (!fades(judged.limits)) return judged;
   judged.cold_caches = report::ColdCaches{reads.reads, reads.first};
   const auto memory = std::find_if(judged.gains.begin(), judged.gains.end(),
                                    [&](const report::BottleneckGain& gain) { return gain.name == judged.limits; });
@@ -239,7 +241,7 @@ report::Bottleneck find_bottleneck(const Prepared& prepared, const RenderJob& jo
   }
   if (ringbus::best_when_warm({memory->gain, memory->low}, reads.first_share(), others))
     judged.cold_caches->when_warm = memory->name;
-  return report::judge_gains(std::move(judged));
+  return report::judge_gains(std::move(judged), fades);
 }
 
 report::Bound bound_of(const ringbus::RunResult& result) {

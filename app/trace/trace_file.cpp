@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <memory>
 #include <string_view>
 #include <unordered_map>
@@ -30,7 +31,8 @@ double window_end(std::string_view text) {
 
 ringbus::TimelineOptions options_of(const TraceArguments& arguments, bool native) {
   ringbus::TimelineOptions out;
-  out.every = arguments.every;
+  out.thins = arguments.every == 0;
+  out.every = std::max<std::uint64_t>(1, arguments.every);
   out.most = arguments.events;
   if (arguments.window.empty()) return out;
   const std::size_t colon = arguments.window.find(':');
@@ -107,17 +109,31 @@ TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Time
       perfetto_ ? perfetto_trace(file, timeline, native_, complete) : chrome_trace(file, timeline, native_, complete);
   const std::size_t names = 5 * timeline.tracks.size() + 2;
   std::size_t budget = most_ - std::min(most_, names + counters.size());
+  out.left = timeline.every;
+  const auto too_many = [&] {
+    std::size_t needed = 0;
+    for (const Slice& slice : timeline.slices)
+      if (is_left(slice, out.left)) needed += writer->events_of(slice);
+    return needed > budget;
+  };
+  constexpr std::uint64_t kFewest = std::uint64_t{1} << 32;
+  while (wanted_.thins && out.left < kFewest && too_many()) out.left *= 2;
+  std::vector<Slice> left;
+  if (out.left != timeline.every)
+    std::copy_if(timeline.slices.begin(), timeline.slices.end(), std::back_inserter(left),
+                 [&](const Slice& slice) { return is_left(slice, out.left); });
+  const std::vector<Slice>& all = out.left != timeline.every ? left : timeline.slices;
   std::size_t slices = 0;
-  for (; slices < timeline.slices.size(); ++slices) {
-    const std::size_t needed = writer->events_of(timeline.slices[slices]);
+  for (; slices < all.size(); ++slices) {
+    const std::size_t needed = writer->events_of(all[slices]);
     if (needed > budget) break;
     budget -= needed;
   }
-  out.cut |= slices < timeline.slices.size();
+  out.cut |= slices < all.size();
   if (out.cut) {
     const double end = static_cast<double>(std::min(wanted_.end, timeline.end)),
                  first = static_cast<double>(wanted_.first);
-    const double at = slices == 0 ? first : static_cast<double>(timeline.slices[slices - 1].begin);
+    const double at = slices == 0 ? first : static_cast<double>(all[slices - 1].begin);
     out.reached = end > first ? std::clamp((at - first) / (end - first), 0.0, 1.0) : 1;
     // Packets are issued at no even rate, so that this is a guess with some room.
     constexpr double kRoom = 2;
@@ -127,7 +143,7 @@ TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Time
   std::unordered_map<std::uint64_t, Trip> trips;
   std::vector<bool> used(timeline.tracks.size());
   for (std::size_t i = 0; i < slices; ++i) {
-    const Slice& slice = timeline.slices[i];
+    const Slice& slice = all[i];
     used[slice.track] = true;
     if (slice.trip != 0) ++trips[slice.trip].slices;
   }
@@ -135,7 +151,7 @@ TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Time
   for (const auto& [row, i] : counters)
     writer->counter(row->part, row->quantity, static_cast<double>(i) * series->interval * scale, row->values[i]);
   for (std::size_t i = 0; i < slices; ++i) {
-    const Slice& slice = timeline.slices[i];
+    const Slice& slice = all[i];
     OnWay way = OnWay::kNone;
     if (slice.trip != 0 && trips[slice.trip].slices >= 2) {
       Trip& trip = trips[slice.trip];

@@ -14,7 +14,7 @@ namespace carousel::app {
 struct TraceArguments {
   std::string file;                ///< empty: none
   std::string window;              ///< A:B in cycles, or seconds of a native run; empty: the whole run
-  std::uint64_t every = 1;         ///< one of so many packets of each resource is traced
+  std::uint64_t every = 0;         ///< one of so many packets of each resource is traced; 0: as many as `events` allow
   std::size_t events = 1'000'000;  ///< most events
 };
 
@@ -32,7 +32,8 @@ class TraceFile {
 
   struct Written {
     std::size_t events = 0;
-    bool cut = false;         ///< events were left out, for there were too many
+    std::uint64_t left = 1;   ///< one of about so many packets is left, for there were too many events
+    bool cut = false;         ///< the later events were left out, for there were too many
     double reached = 1;       ///< the part of the time that was asked for to which they reach
     std::uint64_t every = 1;  ///< if they were cut: one of so many packets may reach to its end
   };

@@ -15,8 +15,10 @@ void serve(int port, const std::function<HttpAnswer(const HttpRequest&)>& answer
   httplib::Server server;
   // Each request has a connection of its own: its body is never read, and would be taken for the next request.
   server.set_keep_alive_max_count(1);
-  // An idle connection holds one of the few threads, and the end of the program, for as long.
+  // An idle connection holds one of the threads, and the end of the program, for as long.
   server.set_read_timeout(2, 0);
+  constexpr std::size_t kAtOnce = 64;
+  server.new_task_queue = [] { return new httplib::ThreadPool(kAtOnce); };  // the server deletes it
   // In place of SO_REUSEPORT, which would let another process of this user share the port.
   server.set_socket_options([](socket_t socket) {
     const int yes = 1;

@@ -80,12 +80,16 @@ std::string gain_text(const BottleneckGain& gain) {
   return fmt::format("{:+.1f} % ({:+.1f} to {:+.1f} %)", 100 * gain.gain, 100 * gain.low, 100 * gain.high);
 }
 
-Bottleneck judge_gains(Bottleneck found) {
-  const BottleneckGain* named = nullptr;
-  for (const BottleneckGain& gain : found.gains)
-    if (gain.together == 1 && worth_naming(gain.gain, gain.low) &&
-        (named == nullptr || likely_gain(gain.gain, gain.low) > likely_gain(named->gain, named->low)))
-      named = &gain;
+Bottleneck judge_gains(Bottleneck found, const std::function<bool(const std::string&)>& fades) {
+  constexpr double kTie = 0.03;
+  const BottleneckGain *named = nullptr, *lasting = nullptr;
+  const auto likely = [](const BottleneckGain& gain) { return likely_gain(gain.gain, gain.low); };
+  for (const BottleneckGain& gain : found.gains) {
+    if (gain.together != 1 || !worth_naming(gain.gain, gain.low)) continue;
+    if (named == nullptr || likely(gain) > likely(*named)) named = &gain;
+    if ((!fades || !fades(gain.name)) && (lasting == nullptr || likely(gain) > likely(*lasting))) lasting = &gain;
+  }
+  if (lasting != nullptr && likely(*lasting) >= likely(*named) - kTie) named = lasting;
   found.limits = named == nullptr ? "" : named->name;
   found.rivals.clear();
   for (const BottleneckGain& gain : found.gains)

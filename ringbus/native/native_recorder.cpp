@@ -99,9 +99,11 @@ Timeline NativeRecorder::own_timeline() const {
   const auto take = [&](const SliceLog& log) {
     out.slices.insert(out.slices.end(), log.slices().begin(), log.slices().end());
     out.cut |= log.stopped();
+    out.every = std::max(out.every, log.left());
   };
   for (const SliceLog& log : slices_) take(log);
   take(messages_);
+  thin(out.slices, out.every);
   sort_slices(out.slices);
   return out;
 }

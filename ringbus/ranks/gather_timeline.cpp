@@ -64,6 +64,7 @@ void send_timeline(Transport& transport, const Timeline& timeline) {
   head.part(kMark);
   head.part(timeline.end);
   head.part(timeline.cut);
+  head.part(timeline.every);
   head.part(std::uint64_t{timeline.tracks.size()});
   for (const SliceTrack& track : timeline.tracks) {
     head.part(characters(track.part));
@@ -123,6 +124,7 @@ class TimelineReader {
     std::uint64_t tracks = 0;
     reader.part(timeline.end);
     reader.part(timeline.cut);
+    reader.part(timeline.every);
     reader.part(tracks);
     for (; tracks > 0; --tracks) {
       std::string part = text(reader);
@@ -166,6 +168,7 @@ void gather_timeline(Transport& transport, const std::vector<RankClock>& first, 
     Timeline& other = others[r];
     timeline.end = std::max(timeline.end, without_drift(other.end, gain, other.end));
     timeline.cut |= other.cut;
+    timeline.every = std::max(timeline.every, other.every);
     for (SliceTrack& track : other.tracks) timeline.tracks.push_back(std::move(track));
     for (Slice slice : other.slices) {
       slice.track += base;
@@ -175,6 +178,7 @@ void gather_timeline(Transport& transport, const std::vector<RankClock>& first, 
     }
     other = {};
   }
+  thin(timeline.slices, timeline.every);
   sort_slices(timeline.slices);
 }
 

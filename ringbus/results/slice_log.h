@@ -61,15 +61,30 @@ struct Timeline {
   std::vector<Slice> slices;        ///< by begin, then track
   std::uint64_t end = 0;            ///< the end of the run
   bool cut = false;                 ///< recording ended before the run did, for there were too many
+  std::uint64_t every = 1;          ///< one of about so many packets is here, for there were too many
   std::vector<RankClock> clocks{};  ///< one for each rank whose slices are here, on rank 0's clock; empty: one process
   friend bool operator==(const Timeline&, const Timeline&) = default;
 };
+
+/// True for those trips that are left where one of `every` is, a power of 2: of the same trips fewer and fewer. Those
+/// of no packet are left where all are.
+inline bool is_left(const Slice& slice, std::uint64_t every) {
+  if (every == 1) return true;
+  const std::uint64_t mixed = (slice.trip ^ slice.trip >> 29) * 0x9e3779b97f4a7c15ull;
+  return slice.trip != 0 && ((mixed ^ mixed >> 32) & (every - 1)) == 0;
+}
+
+/// Leaves one of `every` packets.
+inline void thin(std::vector<Slice>& slices, std::uint64_t every) {
+  std::erase_if(slices, [&](const Slice& slice) { return !is_left(slice, every); });
+}
 
 /// The slices that are wanted.
 struct TimelineOptions {
   std::uint64_t first = 0, end = std::numeric_limits<std::uint64_t>::max();  ///< window in which they begin
   std::uint64_t every = 1;  ///< one of so many packets of each resource is recorded; units only if it is 1
   std::size_t most = 0;     ///< about; 0: none is recorded
+  bool thins = false;       ///< beyond `most`, half of the packets are left out instead of what comes later
 };
 
 /// Slices of one agent or thread, in the order in which they ended.
@@ -81,10 +96,21 @@ class SliceLog {
 
   void add(const Slice& slice) {
     if (!recording_ || slice.begin < options_.first || slice.begin >= options_.end) return;
-    if (slice.trip == 0 && options_.every != 1) return;
+    if ((slice.trip == 0 && options_.every != 1) || !is_left(slice, left_)) return;
     slices_.push_back(slice);
-    recording_ = slices_.size() < room_;
+    if (slices_.size() < room_) return;
+    if (options_.thins)
+      halve();
+    else
+      stop();
   }
+  /// Leaves out half of the packets that are recorded, and of those to come.
+  void halve() {
+    left_ *= 2;
+    thin(slices_, left_);
+  }
+  /// One of about so many packets is left.
+  std::uint64_t left() const { return left_; }
   /// Tells whether the next packet that is issued here is to be recorded.
   bool wants_next() { return options_.every > 0 && issued_++ % options_.every == 0; }
   /// Nothing is added any more.
@@ -97,7 +123,7 @@ class SliceLog {
   TimelineOptions options_;
   std::size_t room_;
   std::vector<Slice> slices_;
-  std::uint64_t issued_ = 0;
+  std::uint64_t issued_ = 0, left_ = 1;
   bool recording_ = true;
 };
 

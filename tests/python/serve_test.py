@@ -188,6 +188,19 @@ class Serve(unittest.TestCase):
         self.assertEqual(self.ask(f"/{'0' * 32}/0/sweep/ask?topology.resources=3", method="POST")[0].status, 404)
         self.assertEqual(self.simulate("topology.resources=3", host="example.org")[0].status, 421)
 
+    def test_idle_connections_keep_nobody_waiting(self):
+        # Each is closed after two seconds, and a server with a thread for eight of them would close some first.
+        idle = [socket.create_connection(("127.0.0.1", self.port)) for _ in range(40)]
+        try:
+            self.assertEqual(self.site("")[0].status, 200)
+            for one in idle:
+                one.setblocking(False)
+                with self.assertRaises(BlockingIOError):
+                    one.recv(1)
+        finally:
+            for one in idle:
+                one.close()
+
     def test_no_other_address(self):
         others = {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)} - {"127.0.0.1"}
         for address in sorted(others | {"127.0.0.2"}):

@@ -54,15 +54,20 @@ LinkRecorder Recorder::of_link(ResourceId from, std::uint32_t wire) {
 
 void Recorder::limit() {
   if (cut_ || ray_ != nullptr) return;
-  std::size_t slices = 0;
-  for (const SliceLog& log : slices_) slices += log.slices().size();
-  if (slices < options_.most) return;
+  const auto too_many = [this] {
+    std::size_t slices = 0;
+    for (const SliceLog& log : slices_) slices += log.slices().size();
+    return slices >= options_.most;
+  };
+  while (options_.thins && too_many())
+    for (SliceLog& log : slices_) log.halve();
+  if (!too_many()) return;
   cut_ = true;
   for (SliceLog& log : slices_) log.stop();
 }
 
 Timeline Recorder::timeline(Cycle end) const {
-  Timeline out{{}, {}, end, cut_};
+  Timeline out{{}, {}, end, cut_, slices_.front().left()};
   for (std::size_t r = 0; r < topology_.resources(); ++r) {
     const std::string part = fmt::format("resource {}", r);
     out.tracks.push_back({part, "dispatch"});

@@ -25,7 +25,7 @@ class Recorder {
   Recording of_shading();
   LinkRecorder of_link(ResourceId from, std::uint32_t wire);
 
-  /// Ends the recording of slices if there are as many as are wanted. While no agent runs.
+  /// Ends the recording of slices if there are as many as are wanted, or thins them. While no agent runs.
   void limit();
   /// When the run is over.
   Timeline timeline(Cycle end) const;

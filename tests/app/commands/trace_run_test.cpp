@@ -13,6 +13,7 @@ namespace {
 
 using Json = nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 
 const char* const kSmall =
     "scene: {builtin: cornell}\nimage: {width: 12, height: 8, samples: 1}\n"
@@ -125,7 +126,8 @@ TEST(TraceRun, IsSmallerForAWindowASampleAndAMost) {
   EXPECT_LT(slices(sample), all / 4);
   EXPECT_GT(slices(sample), all / 40);
   check_events(sample, 1e9);
-  const Outcome cut = program.run({"run", "small.yaml", "--trace", "cut.json", "--trace-events", "1000"});
+  const Outcome cut =
+      program.run({"run", "small.yaml", "--trace", "cut.json", "--trace-events", "1000", "--trace-sample", "1"});
   EXPECT_EQ(cut.status, 0);
   const auto reached = [](const std::string& warning) {
     const std::size_t at = warning.find("ends after ");
@@ -143,6 +145,34 @@ TEST(TraceRun, IsSmallerForAWindowASampleAndAMost) {
   EXPECT_LE(few["traceEvents"].size(), 1000u);
   EXPECT_GT(few["traceEvents"].size(), 500u);
   check_events(few, 1e9);
+}
+
+// As many packets as fit reach to the end of the run, the same ones on any number of threads.
+TEST(TraceRun, HasAsManyPacketsAsFit) {
+  const Program program;
+  program.write("small.yaml", kSmall);
+  const auto traced = [&](const char* file, std::vector<std::string> more) {
+    std::vector<std::string> words{"run",  "small.yaml", "--trace", file, "--trace-events",
+                                   "1000", "--force",    "--out",   "out"};
+    words.insert(words.end(), more.begin(), more.end());
+    const Outcome run = program.run(words);
+    EXPECT_EQ(run.status, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr(std::string(file) + " has one of about ")) << run.err;
+    EXPECT_THAT(run.err, Not(HasSubstr("ends after")));
+    const Json trace = Json::parse(program.read(file));
+    EXPECT_LE(trace["traceEvents"].size(), 1000u);
+    EXPECT_GT(trace["traceEvents"].size(), 300u);
+    check_events(trace, 1e9);
+    return trace;
+  };
+  const Json trace = traced("thin.json", {"--set", "engine.threads=1"});
+  double last = 0;
+  for (const Json& event : trace["traceEvents"])
+    if (event["ph"] == "X") last = std::max(last, event["ts"].get<double>());
+  const double cycles = Json::parse(program.read("out/report.json"))["engine"]["cycles"];
+  EXPECT_GT(last, 0.9 * cycles);
+  EXPECT_EQ(traced("three.json", {"--set", "engine.threads=3"}), trace);
+  traced("native.json", {"--set", "engine.kind=native"});
 }
 
 TEST(TraceRun, OfTheNativeEngineHasTimesOfTheHost) {

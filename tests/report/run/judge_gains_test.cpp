@@ -162,6 +162,16 @@ TEST(JudgeGains, OfColdCachesNobodyMayKnowWhatGainsMostWhenTheyAreWarm) {
             "the first time, and memory gains less in a larger picture, where another class may gain most");
 }
 
+// Memory gains a little more than boxes while caches are cold. In a larger picture boxes go on to gain as much.
+TEST(JudgeGains, OfATieItNamesTheClassThatLasts) {
+  const auto fades = [](const std::string& part) { return part == "memory"; };
+  Bottleneck found{.gains = {gain("memory", 0.22, 0.16, 0.28), gain("boxes", 0.2, 0.14, 0.26)}};
+  EXPECT_EQ(judge_gains(found, fades).limits, "boxes");
+  EXPECT_EQ(judge_gains(found).limits, "memory");
+  found.gains[0].gain += 0.02;
+  EXPECT_EQ(judge_gains(found, fades).limits, "memory");
+}
+
 // What is likely to gain is worth a name although chance may have made its gain; of what is not, nothing is said.
 TEST(JudgeGains, SaysThatAClassProbablyLimits) {
   const Bottleneck b = judge_gains({.gains = {gain("boxes", 0.18, -0.06, 0.42)}});
