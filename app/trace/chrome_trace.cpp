@@ -24,12 +24,13 @@ class ChromeTrace final : public TraceWriter {
     file_.write("\"");
     if (!complete) file_.write(fmt::format(",\"incomplete\":\"{}\"", kIncomplete));
     write_clocks();
-    file_.write("},\"traceEvents\":[\n");
   }
 
   std::size_t events_of(const Slice& s) const override { return s.trip != 0 ? 2 : 1; }
 
-  void name_tracks(const std::vector<bool>& used, bool counters) override {
+  void name_tracks(const std::vector<bool>& used, bool counters, std::uint64_t every) override {
+    if (every > 1) file_.write(fmt::format(",\"sample\":\"{}\"", sample_text(every)));
+    file_.write("},\"traceEvents\":[\n");
     if (counters) process(1, "machine");
     std::string part;
     std::uint32_t pid = 1;

@@ -22,7 +22,8 @@ class PerfettoTrace final : public TraceWriter {
 
   std::size_t events_of(const Slice&) const override { return 2; }
 
-  void name_tracks(const std::vector<bool>& used, bool counters) override {
+  void name_tracks(const std::vector<bool>& used, bool counters, std::uint64_t every) override {
+    sample_ = sample_text(every);
     if (counters) name_part("machine");
     for (std::uint32_t t = 0; t < timeline_.tracks.size(); ++t) {
       if (!used[t]) continue;
@@ -91,6 +92,7 @@ class PerfettoTrace final : public TraceWriter {
       if (std::string clock = clock_text(timeline_, part); !clock.empty())
         track.mutable_process()->add_process_labels(std::move(clock));
       if (!complete_) track.mutable_process()->add_process_labels(kIncomplete);
+      if (!sample_.empty()) track.mutable_process()->add_process_labels(sample_);
       write();
     }
     return found->second;
@@ -127,6 +129,7 @@ class PerfettoTrace final : public TraceWriter {
   const ringbus::Timeline& timeline_;
   double scale_;
   bool complete_;
+  std::string sample_;
   perfetto::Trace trace_;
   std::size_t packets_ = 0;
   std::map<std::string, std::uint64_t> parts_;

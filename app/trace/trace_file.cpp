@@ -147,7 +147,7 @@ TraceFile::Written TraceFile::write_events(AtomicFile& file, const ringbus::Time
     used[slice.track] = true;
     if (slice.trip != 0) ++trips[slice.trip].slices;
   }
-  writer->name_tracks(used, !counters.empty());
+  writer->name_tracks(used, !counters.empty(), out.left);
   for (const auto& [row, i] : counters)
     writer->counter(row->part, row->quantity, static_cast<double>(i) * series->interval * scale, row->values[i]);
   for (std::size_t i = 0; i < slices; ++i) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -22,8 +23,8 @@ class TraceWriter {
 
   /// Events that a slice takes, at most.
   virtual std::size_t events_of(const ringbus::Slice& slice) const = 0;
-  /// The tracks that have slices, by index; `counters`: there will be some.
-  virtual void name_tracks(const std::vector<bool>& used, bool counters) = 0;
+  /// The tracks that have slices, by index; `counters`: there will be some. One of about `every` packets is there.
+  virtual void name_tracks(const std::vector<bool>& used, bool counters, std::uint64_t every) = 0;
   virtual void counter(const std::string& part, const std::string& name, double at, double value) = 0;
   virtual void slice(const ringbus::Slice& slice, OnWay way) = 0;
   /// Ends the events. Returns the events in it.
@@ -32,6 +33,11 @@ class TraceWriter {
 
 /// Marks the trace of a run that was interrupted.
 inline constexpr const char* kIncomplete = "incomplete: the run was interrupted";
+
+/// Marks a trace that has one of about `every` packets; empty if it has all.
+inline std::string sample_text(std::uint64_t every) {
+  return every == 1 ? "" : fmt::format("one of about {} packets, and no units, for there were too many events", every);
+}
 
 /// Numbers that tell more of a slice, with their names.
 struct SliceArguments {

@@ -5,6 +5,9 @@ namespace carousel {
 /// A gain below this fraction is not worth a verdict.
 inline constexpr double kWorthIt = 0.05;
 
+/// Gains that differ by no more than this are tied.
+inline constexpr double kTie = 0.03;
+
 /// By which gains are compared for a verdict: the lower end of the interval counts for a third, since the greatest of
 /// several uncertain gains is likely to be one that was overestimated.
 constexpr double likely_gain(double gain, double low) {

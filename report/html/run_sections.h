@@ -52,7 +52,7 @@ Html values_section(const nlohmann::ordered_json& report, const nlohmann::ordere
 
 /// The class of parts that limits the machine, with the interval of its gain, or why there is none.
 std::string verdict_sentence(const nlohmann::ordered_json& report);
-/// What a larger picture changes for a class that gains while caches are cold; empty if they are not.
+/// Says how the verdict changes in a larger picture, where a class gains while caches are cold; empty elsewhere.
 std::string cold_sentence(const nlohmann::ordered_json& report);
 /// The class that limits the machine when, if it is not always the same.
 std::string phases_text(const nlohmann::ordered_json& report);

@@ -81,7 +81,6 @@ std::string gain_text(const BottleneckGain& gain) {
 }
 
 Bottleneck judge_gains(Bottleneck found, const std::function<bool(const std::string&)>& fades) {
-  constexpr double kTie = 0.03;
   const BottleneckGain *named = nullptr, *lasting = nullptr;
   const auto likely = [](const BottleneckGain& gain) { return likely_gain(gain.gain, gain.low); };
   for (const BottleneckGain& gain : found.gains) {

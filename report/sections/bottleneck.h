@@ -147,8 +147,8 @@ template <class V>
 void describe(V& v, const Bottleneck& r) {
   v.field("complete", r.complete, "", "false if the search was interrupted; nothing is then found out");
   v.field("limits", r.limits, "",
-          "class that gains most in this frame when relaxed, for certain if its interval lies above 0; empty when none "
-          "probably gains, or none gains 5 %, or nothing is found out");
+          "class that gains most in this frame when relaxed, only probably if its interval reaches below 0; empty when "
+          "none is likely to gain, or none gains 5 %, or nothing is found out");
   v.field("rivals", r.rivals, "", "further classes that may gain as much, as their intervals overlap");
   v.field("group", r.group, "", "what these classes and `limits` have in common; empty if nothing, or none is a rival");
   v.field("verdict", r.verdict, "", "the same in words");

@@ -17,8 +17,9 @@ namespace carousel::ringbus {
 // until no other may well gain more than the one to be named. Classes are given by index.
 
 /// True if a class may well gain more than this, by more than settles a tie. The upper end of 95 % of the gains is more
-/// than may well be: of the 300 machines that the search was tuned on as many are right with two thirds of the way to
-/// it, for a tenth less of simulations. One class of a group may gain what the group does, but no more.
+/// than may well be: of 300 machines that the search was tuned on as many were right with 0.7 of the way to it, for a
+/// tenth less of simulations. Intervals were a tenth narrower then. One class of a group may gain what the group does,
+/// but no more.
 inline bool may_well_gain(const Gain& one, double than) {
   constexpr double kWell = 0.64;
   const double more = one.together == 1 ? kWell * (one.high - one.gain) : 0;

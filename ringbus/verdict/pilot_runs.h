@@ -184,8 +184,8 @@ class PilotRuns {
   double taken_ = 0;
 };
 
-/// The cycles that a pilot of `paths` takes with the seed of `first` and with `seeds` others: its places in the picture
-/// are the same, and their rays are others. Those of `first` are not simulated again. Undefined once
+/// The cycles that a pilot of `paths` takes with the seed of `first` and with `seeds` others. Its places in the picture
+/// stay, and their rays change. The cycles of `first` are known and not simulated again. The result is undefined once
 /// pilots.complete() is false. Throws as run_cycle.
 std::vector<double> cycles_of_seeds(PilotRuns& pilots, const Config& machine, std::uint64_t seeds,
                                     const BasePilot& first, std::uint64_t paths);

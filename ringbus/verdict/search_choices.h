@@ -22,7 +22,7 @@ namespace carousel::ringbus {
 // What the search for the bottleneck looks at next, and when it has seen enough. Classes are given by index.
 
 /// A gain that is worth a second look, and a difference of gains that settles a tie.
-inline constexpr double kEnough = 0.03;
+inline constexpr double kEnough = kTie;
 /// A pilot that differs from the run by this part or less is taken without a further draw.
 inline constexpr double kLike = 0.05;
 /// Classes that a larger pilot is simulated for at most, and at least if there are so many.

@@ -160,6 +160,7 @@ TEST(TraceRun, HasAsManyPacketsAsFit) {
     EXPECT_THAT(run.err, HasSubstr(std::string(file) + " has one of about ")) << run.err;
     EXPECT_THAT(run.err, Not(HasSubstr("ends after")));
     const Json trace = Json::parse(program.read(file));
+    EXPECT_THAT(trace["otherData"].value("sample", ""), HasSubstr("one of about "));
     EXPECT_LE(trace["traceEvents"].size(), 1000u);
     EXPECT_GT(trace["traceEvents"].size(), 300u);
     check_events(trace, 1e9);

@@ -172,7 +172,7 @@ TEST(JudgeGains, OfATieItNamesTheClassThatLasts) {
   EXPECT_EQ(judge_gains(found, fades).limits, "memory");
 }
 
-// What is likely to gain is worth a name although chance may have made its gain; of what is not, nothing is said.
+// A class that is likely to gain gets a name, although chance may have made its gain. A class that is not gets none.
 TEST(JudgeGains, SaysThatAClassProbablyLimits) {
   const Bottleneck b = judge_gains({.gains = {gain("boxes", 0.18, -0.06, 0.42)}});
   EXPECT_EQ(b.limits, "boxes");
